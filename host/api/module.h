@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/api/error.h"
+#include "host/api/panel.h"
+#include "host/api/property_owner.h"
+#include "host/api/renderable.h"
+#include "host/api/script_library.h"
+#include "host/api/statistics.h"
+
+namespace meridian {
+
+/// Where things are on this machine. All absolute.
+struct Paths {
+  std::filesystem::path data;  ///< assets, flights, small rasters: data/ of the source or of the install tree
+  std::filesystem::path shaders;
+  std::filesystem::path assets;     ///< ${ASSETS}
+  std::filesystem::path cache;      ///< ${CACHE}
+  std::filesystem::path sync;       ///< ${SYNC}
+  std::filesystem::path temporary;  ///< ${TEMPORARY}
+};
+
+/// What a module may ask of the host. Outlives every module.
+class Host {
+ public:
+  virtual ~Host() = default;
+  virtual void registerRenderable(std::string type, RenderableFactory factory) = 0;
+  virtual void registerScriptLibrary(ScriptLibrary library) = 0;
+  virtual void registerPanel(std::unique_ptr<Panel> panel) = 0;
+  [[nodiscard]] virtual const Paths& paths() const = 0;
+  [[nodiscard]] virtual Statistics& statistics() = 0;
+  /// The renderable of the scene-graph node of that identifier; null without such a node or renderable.
+  [[nodiscard]] virtual Renderable* renderable(std::string_view node) = 0;
+  /// Identifiers of all nodes, in the order of adding.
+  [[nodiscard]] virtual std::vector<std::string> nodes() const = 0;
+};
+
+/// A part of the program that can be left out at build time. Named in CMake; the host finds it in a generated list.
+class Module : public PropertyOwner {
+ public:
+  using PropertyOwner::PropertyOwner;
+  virtual Result<void> initialize(Host& host) = 0;
+};
+
+}  // namespace meridian

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "host/api/error.h"
+#include "host/api/frame_context.h"
+#include "host/api/ground.h"
+#include "host/api/property.h"
+#include "host/api/property_owner.h"
+#include "host/api/value.h"
+
+namespace meridian::graphics {
+class Graphics;  // host/graphics/graphics.h: programs, pools, limits. Known here by name only.
+}
+
+namespace meridian {
+
+/// What a scene-graph node shows. Made by a factory from an asset's `Renderable` table: cheaply, without OpenGL,
+/// network or raster reads, so that assets can be validated anywhere.
+///
+/// All calls come on the render thread, in this order: initializeGraphics once, then per frame update once and draw
+/// once per view, then deinitializeGraphics once. update and draw never wait for disk, network or a shader compiler.
+class Renderable : public PropertyOwner {
+ public:
+  explicit Renderable(std::string type);
+
+  /// As the asset calls it: "RenderableGlobe".
+  [[nodiscard]] const std::string& type() const { return type_; }
+
+  virtual Result<void> initializeGraphics(graphics::Graphics& /*graphics*/) { return {}; }
+  virtual void deinitializeGraphics() {}
+  virtual void update(const FrameContext& /*frame*/) {}
+  /// Draws into the bound framebuffer, whose viewport is set; leaves the default GL state behind.
+  virtual void draw(const FrameContext& /*frame*/, std::size_t /*view*/) {}
+
+  /// Metres; 0 when nothing is known. What the near and far limits of navigation start from.
+  [[nodiscard]] virtual double boundingSphere() const { return 0.0; }
+  /// Null unless it is something to stand on.
+  [[nodiscard]] virtual Ground* ground() { return nullptr; }
+
+  BoolProperty enabled{{"Enabled", "Enabled", "Whether it is drawn"}, true};
+  FloatProperty opacity{{"Opacity", "Opacity", "0 is invisible, 1 opaque"}, 1.0, {0.0, 1.0}};
+
+ private:
+  std::string type_;
+};
+
+/// What a factory gets beside the table.
+struct RenderableRequest {
+  Value table;             ///< the asset's `Renderable`
+  std::string where;       ///< file and line of the asset, for errors
+  std::string folder;      ///< of the asset file; relative paths start there
+  std::string identifier;  ///< of the node
+};
+
+using RenderableFactory = std::function<Result<std::unique_ptr<Renderable>>(const RenderableRequest&)>;
+
+inline Renderable::Renderable(std::string type) : PropertyOwner("Renderable"), type_(std::move(type)) {
+  addProperty(enabled);
+  addProperty(opacity);
+}
+
+}  // namespace meridian

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/api/error.h"
+#include "host/api/value.h"
+
+namespace meridian {
+
+/// What a script function returns: none, one or several values. An Error becomes a Lua error with the caller's place.
+using ScriptResult = Result<std::vector<Value>>;
+
+/// One function of the `openspace` table. Arguments that the script leaves out are not in the span.
+struct ScriptFunction {
+  std::string name;
+  std::string arguments;  ///< for people and error messages: "globe, group, table"
+  std::string description;
+  std::size_t minimumArguments = 0;
+  std::size_t maximumArguments = 0;
+  std::function<ScriptResult(std::span<const Value>)> call;
+};
+
+/// `openspace.NAME.*`; an empty name means `openspace.*` itself.
+struct ScriptLibrary {
+  std::string name;
+  std::vector<ScriptFunction> functions;
+};
+
+}  // namespace meridian
