@@ -52,3 +52,12 @@ function(meridian_benchmark NAME)
   add_executable(${NAME} ${BENCH_SOURCES})
   target_link_libraries(${NAME} PRIVATE meridian-compiler ${BENCH_LINKS} benchmark::benchmark_main)
 endfunction()
+
+# Adds those of the folders that are there.
+macro(meridian_add_rooms)
+  foreach(room ${ARGN})
+    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${room}/CMakeLists.txt)
+      add_subdirectory(${room})
+    endif()
+  endforeach()
+endmacro()
