@@ -1,0 +1,1 @@
+#include "globebrowsing/geodesy/ellipsoid.h"

@@ -1,0 +1,1 @@
+#include "globebrowsing/tiling/geodetic_tiling.h"
