@@ -12,18 +12,18 @@ namespace {
 thread_local std::size_t allocations = 0;
 }
 
-// Counts this thread's allocations, for the steady frame.
-void* operator new(std::size_t size) {
+// Counts this thread's allocations, for the steady frame. Not inlined: GCC 12 would take free for a mismatch of new.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size == 0 ? 1 : size)) {
     return memory;
   }
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);
 }
-void operator delete(void* memory, std::size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
   std::free(memory);
 }
 
