@@ -32,10 +32,12 @@ constexpr int stopgapLevels = 3;
 constexpr double rootPriority = 3.0;
 constexpr double neededPriority = 1.0;
 
-bool isFinite(const SelectionView& view) {
+bool isUsable(const SelectionView& view) {
   constexpr double farthest = 1e30;
-  if (!(glm::length(view.cameraPosition) < farthest) || !(view.pixelsPerRadian > 0.0) ||
-      !std::isfinite(view.pixelsPerRadian)) {
+  constexpr double fewestPixels = 1e-6;
+  constexpr double mostPixels = 1e12;
+  if (!(glm::length(view.cameraPosition) < farthest) || !(view.pixelsPerRadian > fewestPixels) ||
+      !(view.pixelsPerRadian < mostPixels)) {
     return false;
   }
   for (int column = 0; column < 4; ++column) {
@@ -179,7 +181,7 @@ void ChunkTree::Implementation::prepare(std::span<const SelectionView> views) {
   viewCount_ = 0;
   for (std::size_t i = 0; i < std::min(views.size(), mostViews); ++i) {
     const SelectionView& view = views[i];
-    if (!isFinite(view)) {
+    if (!isUsable(view)) {
       continue;
     }
     PreparedView& prepared = views_[viewCount_++];
@@ -257,7 +259,8 @@ bool ChunkTree::Implementation::mustSplit(const ChunkNode& node, const Demand& d
 
 double ChunkTree::Implementation::priority(const Demand& demand, double base) const {
   const double worth = demand.urgency * (0.25 + 0.75 * demand.centred);
-  return base + worth / (1.0 + worth);
+  constexpr double beyondCompare = 1e15;
+  return base + (worth < beyondCompare ? worth / (1.0 + worth) : 1.0);
 }
 
 void ChunkTree::Implementation::want(const TileIndex& index, double priority) {
@@ -304,7 +307,8 @@ bool ChunkTree::Implementation::visitTarget(NodeNumber number, const Demand& dem
   ++figures_.missing;
   // Zooming out: what was drawn stays until this one is complete. Without a surface of its own, any finer one will do.
   const bool cannotDraw = state == TileResidency::State::Nothing;
-  if ((node.belowFrame + 1 == frame_ || cannotDraw) && coverByFiner(number, !cannotDraw)) {
+  const bool drewFiner = node.belowFrame + 1 == frame_;
+  if ((drewFiner && coverByFiner(number, true)) || (cannotDraw && coverByFiner(number, false))) {
     provisional_ = true;
     return true;
   }

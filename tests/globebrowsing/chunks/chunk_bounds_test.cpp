@@ -118,7 +118,10 @@ TEST(ChunkBoundsTest, AreTight) {
     const double longest = 2.0 * std::max(bounds.box.half.x, bounds.box.half.y);
     EXPECT_LT(longest, 1.15 * width + 1e-6) << toString(index);
     // The thickness is what the Earth bends over the tile, and not much more.
-    EXPECT_LT(2.0 * bounds.box.half.z, 0.4 * width * width / 6378137.0 + 1e-6) << toString(index);
+    // Beside a pole it bends sideways too, and the margin is the same all round.
+    const bool polar = std::abs(tiling.geodetic(index, {0.5, 0.5}).latitude) > 1.3;
+    EXPECT_LT(2.0 * bounds.box.half.z, 0.4 * width * width / 6378137.0 + (polar ? 0.005 * width : 1e-6))
+        << toString(index);
     EXPECT_NEAR(bounds.edgeLength / width, 1.0, 0.05);
   }
 }

@@ -1,5 +1,6 @@
 #include "globebrowsing/chunks/chunk_tree.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -58,7 +59,7 @@ class ChunkTreeTest : public testing::Test {
   void expectNoHoles(const SelectionView& view, const std::set<TileIndex>& selected, std::mt19937& random) {
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     const glm::dvec3 radii = tiling_.ellipsoid().radii();
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 120; ++i) {
       const double reach = std::max(1e4, glm::length(view.cameraPosition) - 6.3e6);
       glm::dvec3 target = view.cameraPosition + 3.0 * reach * glm::dvec3(unit(random), unit(random), unit(random));
       const std::optional<double> hit = nearestHit(view.cameraPosition, target - view.cameraPosition, radii);
@@ -215,7 +216,8 @@ TEST_F(ChunkTreeTest, ZoomingOutKeepsFinerChunksUntilTheCoarserIsComplete) {
   for (const State coarse : {State::Drawable, State::Nothing}) {
     residency_.stateOf = [coarse](const TileIndex& index) { return index.level == 6 ? coarse : State::Complete; };
     for (int frame = 0; frame < 3; ++frame) {
-      EXPECT_EQ(select(view), before);
+      const auto selected = select(view);
+      EXPECT_TRUE(std::includes(selected.begin(), selected.end(), before.begin(), before.end()));
       EXPECT_FALSE(tree_.figures().atTarget);
       for (const TileIndex& index : before) {
         ASSERT_NE(residency_.wish(index), nullptr);
