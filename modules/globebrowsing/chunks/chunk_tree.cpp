@@ -322,6 +322,7 @@ bool ChunkTree::Implementation::visitTarget(NodeNumber number, const Demand& dem
 bool ChunkTree::Implementation::visitChildren(NodeNumber number, const Demand& demand) {
   split(number);
   const std::size_t before = selected_.size();
+  const std::uint32_t kickedBefore = figures_.kicked;
   bool covered = true;
   for (int i = 0; i < pool_[number].childCount; ++i) {
     covered = visit(pool_[number].children[static_cast<std::size_t>(i)]) && covered;
@@ -339,7 +340,7 @@ bool ChunkTree::Implementation::visitChildren(NodeNumber number, const Demand& d
   }
   truncate(before);
   draw(number, demand);
-  ++figures_.kicked;
+  figures_.kicked = kickedBefore + 1;  // whatever stood in for something below is not drawn either
   provisional_ = true;
   return true;
 }
