@@ -77,8 +77,8 @@ struct PreparedView {
 
 /// What all views together ask of a tile.
 struct Demand {
-  std::uint32_t views = 0;     ///< that see it
-  bool behindHorizon = false;  ///< of a view whose frustum has it
+  std::uint32_t views = 0;  ///< that see it
+  bool beside = false;      ///< some view would see it, looking elsewhere
   double distance = 0.0;
   double urgency = 0.0;
   double pixelsPerMetre = 0.0;
@@ -218,13 +218,13 @@ Demand ChunkTree::Implementation::demandOn(const ChunkNode& node) const {
   const OrientedBox& box = node.bounds.box;
   for (std::size_t i = 0; i < viewCount_; ++i) {
     const PreparedView& view = views_[i];
-    const bool hidden = view.horizon.hides(node.horizonCap);
-    if (!hidden && view.frustum.touches(box)) {
-      demand.views |= view.bit;
-    }
-    demand.behindHorizon = demand.behindHorizon || hidden;
-    if (hidden) {
+    if (view.horizon.hides(node.horizonCap)) {
       continue;
+    }
+    if (view.frustum.touches(box)) {
+      demand.views |= view.bit;
+    } else {
+      demand.beside = true;
     }
     // A tile that a view turns its back on still counts by its distance, so that views in all directions agree.
     TileMeasure measure;
@@ -271,7 +271,7 @@ void ChunkTree::Implementation::want(const TileIndex& index, double priority) {
 }
 
 void ChunkTree::Implementation::noteCulled(const ChunkNode& node, const Demand& demand) {
-  if (demand.behindHorizon) {
+  if (!demand.beside) {
     ++figures_.culledHorizon;
     return;
   }

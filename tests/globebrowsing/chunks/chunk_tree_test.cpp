@@ -289,6 +289,24 @@ TEST_F(ChunkTreeTest, OneSelectionServesAllViews) {
   EXPECT_EQ(inRight, rightOnly);
 }
 
+TEST_F(ChunkTreeTest, WhatOneViewMayTurnToIsKeptThoughAnotherNeverSeesIt) {
+  const SelectionView here = above(0.7, 0.2, 1e6, 0.0, 1.0);
+  const SelectionView antipode = above(-0.7, 0.2 + std::numbers::pi, 1e6, 0.0, 1.0);
+  select(here);
+  std::set<TileIndex> beside;
+  for (const FakeResidency::Wish& wish : residency_.wishes) {
+    if (wish.kept) {
+      beside.insert(wish.index);
+    }
+  }
+  EXPECT_GT(tree_.figures().culledFrustum, 0U);
+  EXPECT_GT(tree_.figures().culledHorizon, 0U);
+  select({here, antipode});
+  for (const TileIndex& index : beside) {
+    EXPECT_NE(residency_.wish(index), nullptr) << toString(index);
+  }
+}
+
 TEST_F(ChunkTreeTest, ViewBitsKeepTheirPlaceWhenABadViewIsLeftOut) {
   SelectionView bad;
   bad.cameraPosition.x = std::nan("");
