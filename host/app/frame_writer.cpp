@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 
 #include "host/api/log.h"
-#include "host/app/png_file.h"
 #include "host/app/video_encoder.h"
 
 namespace meridian::app {
@@ -25,29 +24,29 @@ namespace fs = std::filesystem;
 class Sink {
  public:
   virtual ~Sink() = default;
-  virtual Result<void> add(Picture picture) = 0;
+  virtual Result<void> add(graphics::Image picture) = 0;
   virtual Result<void> finish() = 0;
 };
 
 class PictureSink final : public Sink {
  public:
   explicit PictureSink(fs::path file) : file_(std::move(file)) {}
-  Result<void> add(Picture picture) override {
+  Result<void> add(graphics::Image picture) override {
     last_ = std::move(picture);
     return {};
   }
-  Result<void> finish() override { return last_ ? writePng(file_, *last_) : Result<void>{}; }
+  Result<void> finish() override { return last_ ? graphics::writePng(file_, last_->pixels, last_->size) : Result<void>{}; }
 
  private:
   fs::path file_;
-  std::optional<Picture> last_;
+  std::optional<graphics::Image> last_;
 };
 
 class FolderSink final : public Sink {
  public:
   explicit FolderSink(fs::path folder) : folder_(std::move(folder)) {}
-  Result<void> add(Picture picture) override {
-    return writePng(folder_ / fmt::format("frame_{:06}.png", count_++), picture);
+  Result<void> add(graphics::Image picture) override {
+    return graphics::writePng(folder_ / fmt::format("frame_{:06}.png", count_++), picture.pixels, picture.size);
   }
   Result<void> finish() override { return {}; }
 
@@ -59,7 +58,7 @@ class FolderSink final : public Sink {
 class VideoSink final : public Sink {
  public:
   explicit VideoSink(std::unique_ptr<VideoEncoder> encoder) : encoder_(std::move(encoder)) {}
-  Result<void> add(Picture picture) override { return encoder_->add(picture); }
+  Result<void> add(graphics::Image picture) override { return encoder_->add(picture); }
   Result<void> finish() override { return encoder_->finish(); }
 
  private:
@@ -80,9 +79,9 @@ class QueuedWriter final : public FrameWriter {
     }
   }
 
-  Result<void> write(Picture picture) override {
+  Result<void> write(graphics::Image picture) override {
     assert(picture.size == size_);
-    assert(picture.rgba.size() == 4 * static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y));
+    assert(picture.pixels.size() == 4 * static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y));
     std::unique_lock lock(mutex_);
     assert(!ended_);
     changed_.wait(lock, [this] { return queue_.size() < queueLength || error_; });
@@ -107,13 +106,13 @@ class QueuedWriter final : public FrameWriter {
   }
 
  private:
-  std::optional<Picture> next() {
+  std::optional<graphics::Image> next() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return !queue_.empty() || ended_; });
     if (queue_.empty()) {
       return std::nullopt;
     }
-    Picture picture = std::move(queue_.front());
+    graphics::Image picture = std::move(queue_.front());
     queue_.pop_front();
     changed_.notify_all();
     return picture;
@@ -146,7 +145,7 @@ class QueuedWriter final : public FrameWriter {
   glm::ivec2 size_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Picture> queue_;
+  std::deque<graphics::Image> queue_;
   std::optional<Error> error_;
   bool ended_ = false;
   std::thread thread_;

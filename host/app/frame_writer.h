@@ -1,21 +1,14 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <vector>
 
 #include <glm/vec2.hpp>
 
 #include "host/api/error.h"
+#include "host/graphics/image.h"
 
 namespace meridian::app {
-
-/// RGBA, 8 bits each, rows from the top.
-struct Picture {
-  glm::ivec2 size{0};
-  std::vector<std::uint8_t> rgba;
-};
 
 /// Writes the pictures of `--output`, encoding on a thread of its own so that drawing goes on meanwhile. At most
 /// `queueLength` pictures wait; `write` blocks while the queue is full. Used by one thread at a time.
@@ -40,7 +33,7 @@ class FrameWriter {
 
   /// Hands over the next picture, of the size that open was told. Errors: the first thing that went wrong with this or
   /// any picture before it, and from then on the same again.
-  [[nodiscard]] virtual Result<void> write(Picture picture) = 0;
+  [[nodiscard]] virtual Result<void> write(graphics::Image picture) = 0;
   /// Waits until all is on disk and ends the video. Errors as for write. Closing twice does nothing more.
   [[nodiscard]] virtual Result<void> close() = 0;
 };

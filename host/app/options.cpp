@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 
 #include <CLI/CLI.hpp>
@@ -13,7 +12,6 @@
 namespace meridian::app {
 namespace {
 
-constexpr double radiansPerDegree = std::numbers::pi / 180.0;
 constexpr int maximumSide = 16384;
 constexpr std::uint64_t maximumFrames = 1'000'000'000;
 constexpr double minimumAltitude = -20'000.0;  // deeper than any trench or crater of a mapped body
@@ -119,40 +117,15 @@ Result<glm::ivec2> parseSize(std::string_view text) {
   return wrong("--size", text, fmt::format("WIDTHxHEIGHT in pixels, each 1 to {}, as in 1280x720", maximumSide));
 }
 
-struct CameraPart {
-  std::string_view name;
-  double minimum;
-  double maximum;
-};
-constexpr CameraPart cameraParts[] = {{"latitude", -90.0, 90.0},
-                                      {"longitude", -360.0, 360.0},
-                                      {"altitude", minimumAltitude, maximumAltitude},
-                                      {"heading", -360.0, 360.0},
-                                      {"pitch", -90.0, 90.0}};
-
-Result<CameraPlace> parseCamera(std::string_view text) {
-  const auto parts = split(text, ',');
-  if (parts.size() != 3 && parts.size() != 5) {
-    return wrong("--camera", text,
-                 "LAT,LON,ALT or LAT,LON,ALT,HEADING,PITCH in degrees and metres, as in 46.5,8,20000,180,-30");
+Result<navigation::GeodeticPose> parseCamera(std::string_view text) {
+  auto pose = navigation::geodeticPoseFromText(text);
+  if (!pose) {
+    return failure(fmt::format("--camera: {}", pose.error().message()));
   }
-  double numbers[5] = {};
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const CameraPart& part = cameraParts[i];
-    const auto number = finiteNumber(parts[i]);
-    if (!number || *number < part.minimum || *number > part.maximum) {
-      return wrong("--camera", parts[i], fmt::format("a {} between {} and {}", part.name, part.minimum, part.maximum));
-    }
-    numbers[i] = *number;
+  if (pose->position.height < minimumAltitude || pose->position.height > maximumAltitude) {
+    return wrong("--camera", text, fmt::format("at an altitude from {} to {} m", minimumAltitude, maximumAltitude));
   }
-  CameraPlace place;
-  place.position.latitude = numbers[0] * radiansPerDegree;
-  place.position.longitude = std::remainder(numbers[1], 360.0) * radiansPerDegree;
-  place.position.height = numbers[2];
-  if (parts.size() == 5) {
-    place.look = CameraPlace::Look{numbers[3] * radiansPerDegree, numbers[4] * radiansPerDegree};
-  }
-  return place;
+  return pose;
 }
 
 Result<PropertySetting> parseSetting(std::string_view text) {

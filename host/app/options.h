@@ -10,24 +10,14 @@
 
 #include <glm/vec2.hpp>
 
-#include "host/api/geodetic_position.h"
 #include "host/api/log.h"
 #include "host/api/time.h"
+#include "host/navigation/geodetic_pose.h"
 
 namespace meridian::app {
 
 /// What the process returns: DESIGN section 6.
 enum class ExitCode : int { Done = 0, Failed = 1, WrongUsage = 2, AssetErrors = 3 };
-
-/// Where `--camera` puts the eye, and where it looks. Radians.
-struct CameraPlace {
-  GeodeticPosition position;
-  struct Look {
-    double heading = 0.0;  ///< clockwise from north
-    double pitch = 0.0;    ///< -pi/2 straight down, 0 level, pi/2 straight up
-  };
-  std::optional<Look> look;  ///< without: straight down, north up
-};
 
 /// One `--set URI=VALUE`. The value is still text: the script engine reads it as a Lua literal.
 struct PropertySetting {
@@ -41,7 +31,7 @@ struct Options {
   bool headless = false;
   glm::ivec2 size{1280, 720};  ///< pixels, each side 1..16384
   std::optional<Time> time;
-  std::optional<CameraPlace> camera;
+  std::optional<navigation::GeodeticPose> camera;
   std::string anchor;  ///< identifier; empty: the host chooses
   std::vector<PropertySetting> settings;
   std::optional<std::filesystem::path> script;

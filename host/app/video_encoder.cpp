@@ -205,14 +205,14 @@ Result<std::unique_ptr<VideoEncoder>> VideoEncoder::open(const std::filesystem::
   return std::unique_ptr<VideoEncoder>(new VideoEncoder(std::move(state)));
 }
 
-Result<void> VideoEncoder::add(const Picture& picture) {
+Result<void> VideoEncoder::add(const graphics::Image& picture) {
   Implementation& state = *implementation_;
   assert(picture.size.x >= state.codec->width && picture.size.y >= state.codec->height);
   // The encoder may still look at the last picture.
   if (const int code = av_frame_make_writable(state.frame.get()); code < 0) {
     return state.error(code);
   }
-  const std::uint8_t* const rows[] = {picture.rgba.data()};
+  const std::uint8_t* const rows[] = {picture.pixels.data()};
   const int strides[] = {4 * picture.size.x};
   sws_scale(state.scaler.get(), rows, strides, 0, state.codec->height, state.frame->data, state.frame->linesize);
   auto encoded = state.encode(state.frame.get());

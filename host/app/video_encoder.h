@@ -6,7 +6,7 @@
 #include <glm/vec2.hpp>
 
 #include "host/api/error.h"
-#include "host/app/frame_writer.h"
+#include "host/graphics/image.h"
 
 namespace meridian::app {
 
@@ -22,7 +22,7 @@ class VideoEncoder {
   /// Without finish the file is left as it is: cut off.
   ~VideoEncoder();
 
-  [[nodiscard]] Result<void> add(const Picture& picture);
+  [[nodiscard]] Result<void> add(const graphics::Image& picture);
   /// Flushes the encoder and writes the index; to be called once, at the end.
   [[nodiscard]] Result<void> finish();
 
