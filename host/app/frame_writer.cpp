@@ -35,7 +35,9 @@ class PictureSink final : public Sink {
     last_ = std::move(picture);
     return {};
   }
-  Result<void> finish() override { return last_ ? graphics::writePng(file_, last_->pixels, last_->size) : Result<void>{}; }
+  Result<void> finish() override {
+    return last_ ? graphics::writePng(file_, last_->pixels, last_->size) : Result<void>{};
+  }
 
  private:
   fs::path file_;
