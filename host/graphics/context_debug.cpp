@@ -10,11 +10,16 @@ namespace meridian::graphics {
 
 namespace {
 
-void APIENTRY logMessage(GLenum /*source*/, GLenum type, GLuint id, GLenum severity, GLsizei length,
-                         const GLchar* message, const void* /*user*/) {
+void APIENTRY logMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* message,
+                         const void* /*user*/) {
   const std::string_view text =
       length >= 0 ? std::string_view(message, static_cast<std::size_t>(length)) : std::string_view(message);
-  if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH) {
+  // Mesa reports every variant it compiles, and compilers' errors reach people as an Error already.
+  const bool chatter =
+      source == GL_DEBUG_SOURCE_SHADER_COMPILER || type == GL_DEBUG_TYPE_PERFORMANCE || type == GL_DEBUG_TYPE_OTHER;
+  if (chatter) {
+    log::debug("OpenGL {}: {}", id, text);
+  } else if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH) {
     log::error("OpenGL {}: {}", id, text);
   } else if (severity == GL_DEBUG_SEVERITY_MEDIUM) {
     log::warning("OpenGL {}: {}", id, text);

@@ -45,7 +45,8 @@ class Expansion {
   [[nodiscard]] Result<std::string> substituted(std::string_view line, const std::string& where) const;
   /// The only `#{name}` of a line that holds nothing else.
   [[nodiscard]] static std::optional<std::string_view> loneName(std::string_view line);
-  void continueAt(std::size_t file, std::size_t number) { source_.text += fmt::format("#line {} {}\n", number, file); }
+  /// Appends the lines of `text`: from that place on when `counting`, else all from it.
+  void emit(std::string_view text, std::size_t file, std::size_t number, bool counting);
   [[nodiscard]] std::string place(std::size_t file, std::size_t number) const {
     return fmt::format("{}:{}", source_.files[file], number);
   }
@@ -103,6 +104,15 @@ Result<std::string> Expansion::substituted(std::string_view line, const std::str
   }
 }
 
+void Expansion::emit(std::string_view text, std::size_t file, std::size_t number, bool counting) {
+  do {
+    source_.text += takeLine(text);
+    source_.text += '\n';
+    source_.origins.push_back({static_cast<std::uint32_t>(file), static_cast<std::uint32_t>(number)});
+    number += counting ? 1 : 0;
+  } while (!text.empty());
+}
+
 Result<void> Expansion::appendInclude(std::string_view directive, std::size_t file, std::size_t number) {
   const std::string_view rest = trimmed(directive.substr(std::string_view("#include").size()));
   if (rest.size() < 3 || rest.front() != '"' || rest.find('"', 1) != rest.size() - 1) {
@@ -110,19 +120,13 @@ Result<void> Expansion::appendInclude(std::string_view directive, std::size_t fi
   }
   std::string name(rest.substr(1, rest.size() - 2));
   if (std::ranges::find(source_.files, name) != source_.files.end()) {
-    source_.text += '\n';
     return {};
   }
   auto text = read(name, place(file, number));
   if (!text) {
     return tl::make_unexpected(std::move(text.error()));
   }
-  source_.text += fmt::format("#line 1 {}\n", source_.files.size());
-  if (auto done = append(*text, std::move(name)); !done) {
-    return done;
-  }
-  continueAt(file, number + 1);
-  return {};
+  return append(*text, std::move(name));
 }
 
 Result<void> Expansion::appendLine(std::string_view line, std::size_t file, std::size_t number) {
@@ -134,22 +138,13 @@ Result<void> Expansion::appendLine(std::string_view line, std::size_t file, std:
   const auto lone = loneName(line);
   if (lone && text->find('\n') != std::string::npos) {
     source_.files.push_back(fmt::format("#{{{}}} in {}", *lone, source_.files[file]));
-    continueAt(source_.files.size() - 1, 1);
-    source_.text += *text;
-    if (source_.text.back() != '\n') {
-      source_.text += '\n';
-    }
-    continueAt(file, number + 1);
+    emit(*text, source_.files.size() - 1, 1, true);
     return {};
   }
   if (!lone && trimmed(*text).starts_with("#include")) {
     return appendInclude(trimmed(*text), file, number);
   }
-  source_.text += *text;
-  source_.text += '\n';
-  if (text->find('\n') != std::string::npos) {
-    continueAt(file, number + 1);
-  }
+  emit(*text, file, number, false);
   return {};
 }
 
@@ -170,7 +165,7 @@ Result<void> Expansion::append(std::string_view text, std::string name) {
 
 /// Where a line of a compiler's log points.
 struct LogPlace {
-  std::size_t file = 0;
+  std::size_t source = 0;
   std::size_t line = 0;
   std::string_view rest;  ///< after the place
 };
@@ -200,7 +195,7 @@ std::optional<LogPlace> logPlace(std::string_view line) {
     }
   }
   LogPlace place;
-  if (!takeNumber(line, place.file)) {
+  if (!takeNumber(line, place.source)) {
     return std::nullopt;
   }
   if (takeCharacter(line, ':')) {
@@ -220,25 +215,28 @@ std::optional<LogPlace> logPlace(std::string_view line) {
 
 }  // namespace
 
+std::string ShaderSource::place(std::size_t line) const {
+  if (line >= 1 && line <= origins.size()) {
+    const Origin& origin = origins[line - 1];
+    return fmt::format("{}:{}", files[origin.file], origin.line);
+  }
+  return fmt::format("{}:{}", files.empty() ? "shader" : files.front(), line);
+}
+
 std::string ShaderSource::readableLog(std::string_view log) const {
   std::string readable;
   while (!log.empty()) {
     const std::string_view line = takeLine(log);
-    const auto place = logPlace(line);
-    if (place && place->file < files.size()) {
-      readable += fmt::format("{}:{}{}\n", files[place->file], place->line, place->rest);
-    } else {
-      readable += fmt::format("{}\n", line);
-    }
+    const auto found = logPlace(line);
+    readable += found ? fmt::format("{}{}\n", place(found->line), found->rest) : fmt::format("{}\n", line);
   }
   return readable;
 }
 
 std::string ShaderSource::firstPlace(std::string_view log) const {
   while (!log.empty()) {
-    const auto place = logPlace(takeLine(log));
-    if (place && place->file < files.size()) {
-      return fmt::format("{}:{}", files[place->file], place->line);
+    if (const auto found = logPlace(takeLine(log))) {
+      return place(found->line);
     }
   }
   return files.empty() ? std::string() : files.front();

@@ -28,7 +28,9 @@ struct SelectionSettings {
   bool frustumCulling = true;
   bool horizonCulling = true;
   double lowestHeight = 0.0;  ///< metres, at most 0: the least height drawn anywhere on the globe
-  int deepestLevel = 30;      ///< 0 draws the roots only
+  /// Whether tiles beside the picture are asked for too, last of all, so that turning round finds them.
+  bool prefetch = true;
+  int deepestLevel = 30;  ///< 0 draws the roots only
 };
 
 /// A chunk to draw.

@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "globebrowsing/providers/layer_type.h"
 #include "globebrowsing/providers/tile_provider.h"
@@ -19,6 +20,9 @@ struct ProviderRequest {
   std::string path;    ///< of the table within the asset: "Renderable.Layers.ColorLayers[1]"
   std::string folder;  ///< of the asset file; relative paths start there
 };
+
+/// The place of a key for errors: "earth.asset:12: Renderable.Layers.ColorLayers[1].FilePath".
+[[nodiscard]] std::string placeOf(const ProviderRequest& request, std::string_view key);
 
 /// One type of provider. To add one: write the class, add its line in provider_registry.cpp.
 struct ProviderType {

@@ -62,12 +62,12 @@ class TileProvider {
   [[nodiscard]] virtual bool dataFiner(const Tiling& tiling, const TileIndex& index,
                                        const TileLayout& layout) const = 0;
 
+  [[nodiscard]] Result<void> openGuarded();
   [[nodiscard]] Result<void> requireReady() const;
 
   std::atomic<State> state_{State::NotOpened};
-  mutable std::mutex mutex_;  ///< held while opening
-  std::optional<Error> error_;
-  std::atomic<bool> errorKnown_{false};
+  std::mutex opening_;
+  std::optional<Error> error_;  ///< written once, before Failed is published
 };
 
 }  // namespace meridian::globebrowsing

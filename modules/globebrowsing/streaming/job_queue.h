@@ -49,6 +49,7 @@ class JobQueue : public std::enable_shared_from_this<JobQueue> {
   void postTask();
   void runBest(const std::stop_token& poolStops);
   std::shared_ptr<QueuedJob> takeBest();
+  void finish(std::shared_ptr<QueuedJob> job, Result<TileDataPointer> result);
 
   WorkerPool* workers_;
   std::mutex mutex_;
@@ -57,6 +58,7 @@ class JobQueue : public std::enable_shared_from_this<JobQueue> {
   std::vector<std::shared_ptr<QueuedJob>> running_;
   std::vector<std::shared_ptr<QueuedJob>> finished_;
   std::size_t tasks_ = 0;  ///< in the pool's line or running
+  std::size_t busy_ = 0;   ///< jobs that run, cancelled ones included
   bool closed_ = false;
 };
 

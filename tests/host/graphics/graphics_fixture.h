@@ -43,7 +43,7 @@ class GraphicsTest : public ::testing::Test {
 
 /// A source that is no file.
 [[nodiscard]] inline ShaderSource shader(std::string body, std::string name) {
-  return {"#version 450 core\n" + std::move(body), {std::move(name)}};
+  return {"#version 450 core\n" + std::move(body), {std::move(name)}, {}};
 }
 
 }  // namespace meridian::graphics

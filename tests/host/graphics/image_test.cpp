@@ -13,11 +13,13 @@ std::filesystem::path file(const char* name) {
 
 /// Every pixel differs, so that swapped rows, columns or channels show.
 std::vector<std::uint8_t> pattern(glm::ivec2 size) {
-  std::vector<std::uint8_t> pixels;
+  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(4 * size.x * size.y));
+  std::size_t next = 0;
   for (int y = 0; y < size.y; ++y) {
     for (int x = 0; x < size.x; ++x) {
-      pixels.insert(pixels.end(), {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
-                                   static_cast<std::uint8_t>(x ^ (3 * y)), static_cast<std::uint8_t>(x + y)});
+      for (const int value : {x, y, x ^ (3 * y), x + y}) {
+        pixels[next++] = static_cast<std::uint8_t>(value);
+      }
     }
   }
   return pixels;

@@ -13,6 +13,15 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
+/// Where messages say that each line is.
+std::vector<std::string> places(const ShaderSource& source) {
+  std::vector<std::string> found;
+  for (std::size_t line = 1; line <= source.origins.size(); ++line) {
+    found.push_back(source.firstPlace("0:" + std::to_string(line) + "(1): error"));
+  }
+  return found;
+}
+
 class ShaderTemplate : public ::testing::Test {
  protected:
   ShaderTemplate() { std::filesystem::create_directories(folder_ / "room"); }
@@ -25,7 +34,7 @@ class ShaderTemplate : public ::testing::Test {
   ShaderTemplates templates_{folder_};
 };
 
-TEST_F(ShaderTemplate, IncludesEachFileOnceAndNumbersTheLines) {
+TEST_F(ShaderTemplate, IncludesEachFileOnceAndKnowsWhereLinesCameFrom) {
   write("room/top.frag",
         "#version 450 core\n"
         "#include \"room/a.glsl\"\n"
@@ -37,9 +46,10 @@ TEST_F(ShaderTemplate, IncludesEachFileOnceAndNumbersTheLines) {
   ASSERT_TRUE(source.has_value()) << source.error().message();
   EXPECT_EQ(source->text,
             "#version 450 core\n"
-            "#line 1 1\nint a;\n#line 3 0\n"
-            "#line 1 2\n\nint b;\n#line 4 0\n"
+            "int a;\n"
+            "int b;\n"
             "void main() {}\n");
+  EXPECT_THAT(places(*source), ElementsAre("room/top.frag:1", "room/a.glsl:1", "room/b.glsl:2", "room/top.frag:4"));
   EXPECT_THAT(source->files, ElementsAre("room/top.frag", "room/a.glsl", "room/b.glsl"));
 }
 
@@ -58,16 +68,19 @@ TEST_F(ShaderTemplate, PutsTextInPlaceOfNames) {
       "float x = #{value} * #{value};\n"
       "#{functions}\n"
       "int y = #{two lines};\n"
-      "#include \"room/#{kind}.glsl\"\n",
+      "#include \"room/#{kind}.glsl\"\n"
+      "int last;\n",
       "top", {{"value", "2.0"}, {"functions", "int f();\nint #{g}();"}, {"two lines", "1\n+ 2"}, {"kind", "fast"}});
   ASSERT_TRUE(source.has_value()) << source.error().message();
   EXPECT_EQ(source->text,
             "#version 450 core\n"
             "float x = 2.0 * 2.0;\n"
-            "#line 1 1\nint f();\nint #{g}();\n#line 4 0\n"
-            "int y = 1\n+ 2;\n#line 5 0\n"
-            "#line 1 2\nint fast;\n#line 6 0\n");
-  EXPECT_THAT(source->files, ElementsAre("top", "#{functions} in top", "room/fast.glsl"));
+            "int f();\nint #{g}();\n"
+            "int y = 1\n+ 2;\n"
+            "int fast;\n"
+            "int last;\n");
+  EXPECT_THAT(places(*source), ElementsAre("top:1", "top:2", "#{functions} in top:1", "#{functions} in top:2", "top:4",
+                                           "top:4", "room/fast.glsl:1", "top:6"));
 }
 
 TEST_F(ShaderTemplate, NamesFileAndLineOfWhatIsWrong) {
@@ -98,13 +111,13 @@ TEST_F(ShaderTemplate, NamesFileAndLineOfWhatIsWrong) {
 }
 
 TEST(ShaderLog, IsReadableWhoeverWroteIt) {
-  const ShaderSource source{"", {"surface/chunk.frag", "gpu/layers.glsl"}};
-  EXPECT_EQ(source.readableLog("1:12(5): error: no such thing\n0:3(1): warning: odd"),
-            "gpu/layers.glsl:12: error: no such thing\nsurface/chunk.frag:3: warning: odd\n");
-  EXPECT_EQ(source.readableLog("0(7) : error C1008: undefined"), "surface/chunk.frag:7 : error C1008: undefined\n");
-  EXPECT_EQ(source.readableLog("ERROR: 1:4: 'x' : undeclared"), "gpu/layers.glsl:4: 'x' : undeclared\n");
-  EXPECT_EQ(source.readableLog("out of luck\n9:1(1): error: nowhere"), "out of luck\n9:1(1): error: nowhere\n");
-  EXPECT_EQ(source.firstPlace("Compilation failed\n1:12(5): error"), "gpu/layers.glsl:12");
+  const ShaderSource source{"", {"surface/chunk.frag", "gpu/layers.glsl"}, {{0, 1}, {1, 1}, {1, 2}, {0, 3}}};
+  EXPECT_EQ(source.readableLog("0:3(5): error: no such thing\n0:4(1): warning: odd"),
+            "gpu/layers.glsl:2: error: no such thing\nsurface/chunk.frag:3: warning: odd\n");
+  EXPECT_EQ(source.readableLog("0(3) : error C1008: undefined"), "gpu/layers.glsl:2 : error C1008: undefined\n");
+  EXPECT_EQ(source.readableLog("ERROR: 0:4: 'x' : undeclared"), "surface/chunk.frag:3: 'x' : undeclared\n");
+  EXPECT_EQ(source.readableLog("out of luck\n0:9(1): error: end"), "out of luck\nsurface/chunk.frag:9: error: end\n");
+  EXPECT_EQ(source.firstPlace("Compilation failed\n0:2(5): error"), "gpu/layers.glsl:1");
   EXPECT_EQ(source.firstPlace("12"), "surface/chunk.frag");
 }
 

@@ -1,0 +1,482 @@
+#include "globebrowsing/chunks/chunk_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "globebrowsing/chunks/chunk_bounds.h"
+#include "globebrowsing/chunks/culling.h"
+#include "globebrowsing/chunks/evaluators.h"
+#include "globebrowsing/chunks/node_pool.h"
+#include "globebrowsing/chunks/skirts.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+constexpr std::size_t mostViews = 32;
+constexpr int finestStep = 4;
+/// A float holds 24 bits: a corner patch's edge times this is the error of a vertex along it.
+constexpr double floatPrecision = 0x1p-23;
+constexpr double maximumPrecisionPixels = 0.05;
+/// Metres: nothing is nearer than the near plane; keeps the camera inside a box from asking for endless detail.
+constexpr double nearestDistance = 0.01;
+/// Frames for which a node that is not visited is kept.
+constexpr std::uint64_t patience = 120;
+/// Of the inner nodes without a surface, only these levels are asked for, as a picture to start with.
+constexpr int stopgapLevels = 3;
+
+/// Priorities: roots, then what is needed now, then what may be needed soon. Within a class by urgency.
+constexpr double rootPriority = 3.0;
+constexpr double neededPriority = 1.0;
+
+bool isFinite(const SelectionView& view) {
+  constexpr double farthest = 1e30;
+  if (!(glm::length(view.cameraPosition) < farthest) || !(view.pixelsPerRadian > 0.0) ||
+      !std::isfinite(view.pixelsPerRadian)) {
+    return false;
+  }
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      if (!std::isfinite(view.clipFromModel[column][row])) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+double orElse(double value, double least, double otherwise) {
+  return std::isfinite(value) && value >= least ? value : otherwise;
+}
+
+SelectionSettings inRange(const SelectionSettings& settings) {
+  const SelectionSettings standard;
+  SelectionSettings result = settings;
+  result.scale = orElse(settings.scale, 1e-6, standard.scale);
+  result.compositeTexels = orElse(settings.compositeTexels, 1.0, standard.compositeTexels);
+  result.maximumErrorPixels = orElse(settings.maximumErrorPixels, 1e-3, standard.maximumErrorPixels);
+  result.lowestHeight = std::isfinite(settings.lowestHeight) ? std::min(settings.lowestHeight, 0.0) : 0.0;
+  result.deepestLevel = std::clamp(settings.deepestLevel, 0, maximumLevel);
+  return result;
+}
+
+/// A view made ready for many tiles.
+struct PreparedView {
+  glm::dvec3 position{0.0};
+  glm::dvec3 forward{0.0};  ///< unit, or zero where the matrix has none
+  double pixelsPerRadian = 0.0;
+  std::uint32_t bit = 0;
+  Frustum frustum;
+  Horizon horizon{glm::dvec3(1.0), 0.0, glm::dvec3(0.0)};
+};
+
+/// What all views together ask of a tile.
+struct Demand {
+  std::uint32_t views = 0;     ///< that see it
+  bool behindHorizon = false;  ///< of a view whose frustum has it
+  double distance = 0.0;
+  double urgency = 0.0;
+  double pixelsPerMetre = 0.0;
+  double centred = 0.0;  ///< 1 in the middle of a view, 0 behind it
+};
+
+}  // namespace
+
+class ChunkTree::Implementation {
+ public:
+  explicit Implementation(const Tiling& tiling) : tiling_(tiling) { clear(); }
+
+  void select(std::span<const SelectionView> views, const SelectionSettings& settings, TileResidency& residency);
+  void clear();
+
+  [[nodiscard]] std::span<const SelectedChunk> selected() const { return selected_; }
+  [[nodiscard]] const SelectionFigures& figures() const { return figures_; }
+
+ private:
+  void prepare(std::span<const SelectionView> views);
+  /// Selects what covers the node; false when something in it cannot be drawn.
+  bool visit(NodeNumber number);
+  bool visitTarget(NodeNumber number, const Demand& demand);
+  bool visitChildren(NodeNumber number, const Demand& demand);
+  /// Selects drawable chunks below the node that cover all of it that is visible; nothing if there are none.
+  bool coverByFiner(NodeNumber number, bool drawnOnly);
+  bool coverByFinerChild(NodeNumber number, bool drawnOnly);
+
+  void updateBounds(ChunkNode& node);
+  [[nodiscard]] Demand demandOn(const ChunkNode& node) const;
+  [[nodiscard]] bool mustSplit(const ChunkNode& node, const Demand& demand) const;
+  void noteCulled(const ChunkNode& node, const Demand& demand);
+  void split(NodeNumber number);
+  void draw(NodeNumber number, const Demand& demand);
+  void want(const TileIndex& index, double priority);
+  [[nodiscard]] double priority(const Demand& demand, double base) const;
+  void truncate(std::size_t count);
+
+  void finish();
+  void reclaim(NodeNumber number);
+  void giveChildren(ChunkNode& node);
+
+  const Tiling& tiling_;
+  NodePool pool_;
+  std::vector<NodeNumber> roots_;
+  std::uint64_t frame_ = 1;
+
+  std::array<PreparedView, mostViews> views_{};
+  std::size_t viewCount_ = 0;
+  double occluderScale_ = 1.0;
+  SelectionSettings settings_;
+  const EvaluatorStrategy* evaluator_ = &evaluatorOf(Evaluator::ScreenSpaceError);
+  TileResidency* residency_ = nullptr;
+
+  std::vector<SelectedChunk> selected_;
+  std::vector<NodeNumber> numbers_;  ///< of the nodes of selected_
+  SkirtFitter skirts_;
+  SelectionFigures figures_;
+  bool provisional_ = false;  ///< finer or coarser chunks than wanted are drawn
+};
+
+void ChunkTree::Implementation::clear() {
+  pool_ = NodePool();
+  roots_.clear();
+  for (int root = 0; root < tiling_.rootCount(); ++root) {
+    roots_.push_back(pool_.take({static_cast<std::uint8_t>(root), 0, 0, 0}, noNode));
+  }
+  selected_.clear();
+  numbers_.clear();
+  figures_ = {};
+}
+
+void ChunkTree::Implementation::select(std::span<const SelectionView> views, const SelectionSettings& settings,
+                                       TileResidency& residency) {
+  ++frame_;
+  settings_ = inRange(settings);
+  evaluator_ = &evaluatorOf(settings_.evaluator);
+  residency_ = &residency;
+  figures_ = {};
+  provisional_ = false;
+  truncate(0);
+  prepare(views);
+  for (const NodeNumber root : roots_) {
+    residency.want(pool_[root].index, rootPriority);
+    residency.keep(pool_[root].index);
+  }
+  bool covered = true;
+  if (viewCount_ > 0) {
+    for (const NodeNumber root : roots_) {
+      covered = visit(root) && covered;
+    }
+  }
+  figures_.atTarget = covered && figures_.missing == 0 && !provisional_;
+  finish();
+}
+
+void ChunkTree::Implementation::prepare(std::span<const SelectionView> views) {
+  const glm::dvec3& radii = tiling_.ellipsoid().radii();
+  occluderScale_ = Horizon::occluderScale(radii, settings_.lowestHeight);
+  viewCount_ = 0;
+  for (std::size_t i = 0; i < std::min(views.size(), mostViews); ++i) {
+    const SelectionView& view = views[i];
+    if (!isFinite(view)) {
+      continue;
+    }
+    PreparedView& prepared = views_[viewCount_++];
+    prepared.position = view.cameraPosition;
+    prepared.pixelsPerRadian = view.pixelsPerRadian;
+    prepared.bit = std::uint32_t{1} << i;
+    prepared.frustum = settings_.frustumCulling ? Frustum(view.clipFromModel) : Frustum();
+    // From the middle of the globe the horizon hides nothing.
+    prepared.horizon =
+        Horizon(radii, settings_.lowestHeight, settings_.horizonCulling ? view.cameraPosition : glm::dvec3(0.0));
+    const glm::dvec3 ahead(view.clipFromModel[0][3], view.clipFromModel[1][3], view.clipFromModel[2][3]);
+    const double length = glm::length(ahead);
+    prepared.forward = length > 0.0 && std::isfinite(length) ? ahead / length : glm::dvec3(0.0);
+  }
+}
+
+void ChunkTree::Implementation::updateBounds(ChunkNode& node) {
+  const unsigned version = residency_->heightVersion(node.index);
+  if (!node.bounded || node.heightVersion != version) {
+    node.bounds = chunkBounds(tiling_, node.index, residency_->heightRange(node.index));
+    node.heightVersion = version;
+    node.bounded = true;
+    node.occluderScale = -1.0;
+  }
+  if (node.occluderScale != occluderScale_) {
+    node.horizonCap = Horizon::capOf(node.bounds.cap, occluderScale_);
+    node.occluderScale = occluderScale_;
+  }
+}
+
+Demand ChunkTree::Implementation::demandOn(const ChunkNode& node) const {
+  Demand demand;
+  demand.distance = 1e300;
+  const OrientedBox& box = node.bounds.box;
+  for (std::size_t i = 0; i < viewCount_; ++i) {
+    const PreparedView& view = views_[i];
+    const bool hidden = view.horizon.hides(node.horizonCap);
+    if (!hidden && view.frustum.touches(box)) {
+      demand.views |= view.bit;
+    }
+    demand.behindHorizon = demand.behindHorizon || hidden;
+    if (hidden) {
+      continue;
+    }
+    // A tile that a view turns its back on still counts by its distance, so that views in all directions agree.
+    TileMeasure measure;
+    measure.edgeLength = node.bounds.edgeLength;
+    measure.area = node.bounds.area;
+    measure.distance = std::max(box.distance(view.position), nearestDistance);
+    measure.pixelsPerRadian = view.pixelsPerRadian;
+    const glm::dvec3 towards = view.position - box.centre;
+    const double centreDistance = std::max(glm::length(towards), nearestDistance);
+    const double tilt = std::abs(glm::dot(towards, node.bounds.normal)) / centreDistance;
+    measure.facing = std::min(1.0, tilt + 0.5 * measure.edgeLength / centreDistance);
+    demand.urgency = std::max(demand.urgency, evaluator_->urgency(measure, settings_));
+    demand.pixelsPerMetre = std::max(demand.pixelsPerMetre, view.pixelsPerRadian / measure.distance);
+    demand.distance = std::min(demand.distance, measure.distance);
+    demand.centred = std::max(demand.centred, 0.5 - 0.5 * glm::dot(towards, view.forward) / centreDistance);
+  }
+  return demand;
+}
+
+bool ChunkTree::Implementation::mustSplit(const ChunkNode& node, const Demand& demand) const {
+  if (node.index.level >= settings_.deepestLevel) {
+    return false;
+  }
+  if (node.bounds.edgeLength * floatPrecision * demand.pixelsPerMetre > maximumPrecisionPixels) {
+    return true;
+  }
+  if (demand.urgency > 1.0 && (!evaluator_->limitedByData() || residency_->hasFinerColours(node.index))) {
+    return true;
+  }
+  return residency_->geometricError(node.index, finestStep) * demand.pixelsPerMetre > settings_.maximumErrorPixels;
+}
+
+double ChunkTree::Implementation::priority(const Demand& demand, double base) const {
+  const double worth = demand.urgency * (0.25 + 0.75 * demand.centred);
+  return base + worth / (1.0 + worth);
+}
+
+void ChunkTree::Implementation::want(const TileIndex& index, double priority) {
+  // Roots were asked for before everything else.
+  if (index.level > 0) {
+    residency_->want(index, priority);
+  }
+}
+
+void ChunkTree::Implementation::noteCulled(const ChunkNode& node, const Demand& demand) {
+  if (demand.behindHorizon) {
+    ++figures_.culledHorizon;
+    return;
+  }
+  ++figures_.culledFrustum;
+  // Beside what is drawn: without it, turning the camera would fall back to a coarser chunk.
+  if (settings_.prefetch) {
+    want(node.index, priority(demand, 0.0));
+  }
+  residency_->keep(node.index);
+}
+
+bool ChunkTree::Implementation::visit(NodeNumber number) {
+  ++figures_.visited;
+  ChunkNode& node = pool_[number];
+  node.visitedFrame = frame_;
+  updateBounds(node);
+  const Demand demand = demandOn(node);
+  if (demand.views == 0) {
+    noteCulled(node, demand);
+    return true;
+  }
+  return mustSplit(node, demand) ? visitChildren(number, demand) : visitTarget(number, demand);
+}
+
+bool ChunkTree::Implementation::visitTarget(NodeNumber number, const Demand& demand) {
+  ChunkNode& node = pool_[number];
+  want(node.index, priority(demand, neededPriority));
+  const TileResidency::State state = residency_->state(node.index);
+  if (state == TileResidency::State::Complete) {
+    draw(number, demand);
+    return true;
+  }
+  ++figures_.missing;
+  // Zooming out: what was drawn stays until this one is complete. Without a surface of its own, any finer one will do.
+  const bool cannotDraw = state == TileResidency::State::Nothing;
+  if ((node.belowFrame + 1 == frame_ || cannotDraw) && coverByFiner(number, !cannotDraw)) {
+    provisional_ = true;
+    return true;
+  }
+  if (cannotDraw) {
+    return false;
+  }
+  draw(number, demand);
+  return true;
+}
+
+bool ChunkTree::Implementation::visitChildren(NodeNumber number, const Demand& demand) {
+  split(number);
+  const std::size_t before = selected_.size();
+  bool covered = true;
+  for (int i = 0; i < pool_[number].childCount; ++i) {
+    covered = visit(pool_[number].children[static_cast<std::size_t>(i)]) && covered;
+  }
+  const TileIndex index = pool_[number].index;
+  residency_->keep(index);
+  if (covered) {
+    return true;
+  }
+  if (residency_->state(index) == TileResidency::State::Nothing) {
+    if (index.level % stopgapLevels == 0) {
+      want(index, priority(demand, neededPriority));
+    }
+    return false;
+  }
+  truncate(before);
+  draw(number, demand);
+  ++figures_.kicked;
+  provisional_ = true;
+  return true;
+}
+
+bool ChunkTree::Implementation::coverByFiner(NodeNumber number, bool drawnOnly) {
+  ChunkNode& node = pool_[number];
+  if (node.childCount == 0) {
+    return false;
+  }
+  const std::size_t before = selected_.size();
+  for (int i = 0; i < node.childCount; ++i) {
+    if (!coverByFinerChild(node.children[static_cast<std::size_t>(i)], drawnOnly)) {
+      truncate(before);
+      return false;
+    }
+  }
+  return true;
+}
+
+bool ChunkTree::Implementation::coverByFinerChild(NodeNumber number, bool drawnOnly) {
+  ++figures_.visited;
+  ChunkNode& node = pool_[number];
+  node.visitedFrame = frame_;
+  if (node.index.level > settings_.deepestLevel) {
+    return false;
+  }
+  updateBounds(node);
+  const Demand demand = demandOn(node);
+  if (demand.views == 0) {
+    return true;
+  }
+  const bool drawable = residency_->state(node.index) != TileResidency::State::Nothing;
+  if (drawable && (!drawnOnly || node.selectedFrame + 1 == frame_)) {
+    residency_->keep(node.index);
+    draw(number, demand);
+    return true;
+  }
+  return (!drawnOnly || node.belowFrame + 1 == frame_) && coverByFiner(number, drawnOnly);
+}
+
+void ChunkTree::Implementation::split(NodeNumber number) {
+  if (pool_[number].childCount > 0) {
+    return;
+  }
+  const Children children = tiling_.children(pool_[number].index);
+  for (int i = 0; i < children.count; ++i) {
+    const auto place = static_cast<std::size_t>(i);
+    const NodeNumber child = pool_.take(children.index[place], number);
+    pool_[number].children[place] = child;
+  }
+  pool_[number].childCount = children.count;
+}
+
+void ChunkTree::Implementation::draw(NodeNumber number, const Demand& demand) {
+  const ChunkNode& node = pool_[number];
+  SelectedChunk chunk;
+  chunk.index = node.index;
+  chunk.views = demand.views;
+  chunk.distance = demand.distance;
+  for (chunk.step = 0;; ++chunk.step) {
+    chunk.error = residency_->geometricError(node.index, chunk.step);
+    if (chunk.step == finestStep || chunk.error * demand.pixelsPerMetre <= settings_.maximumErrorPixels) {
+      break;
+    }
+  }
+  residency_->keep(node.index);
+  selected_.push_back(chunk);
+  numbers_.push_back(number);
+}
+
+void ChunkTree::Implementation::truncate(std::size_t count) {
+  selected_.resize(count);
+  numbers_.resize(count);
+}
+
+void ChunkTree::Implementation::finish() {
+  double finestPixels = 0.0;
+  for (std::size_t i = 0; i < viewCount_; ++i) {
+    finestPixels = std::max(finestPixels, views_[i].pixelsPerRadian);
+  }
+  for (const NodeNumber number : numbers_) {
+    pool_[number].selectedFrame = frame_;
+    for (NodeNumber up = pool_[number].parent; up != noNode && pool_[up].belowFrame != frame_; up = pool_[up].parent) {
+      pool_[up].belowFrame = frame_;
+    }
+  }
+  if (!selected_.empty()) {
+    skirts_.fit(tiling_, pool_, *residency_, {selected_, numbers_, settings_.maximumErrorPixels, 1.0 / finestPixels});
+  }
+  std::sort(selected_.begin(), selected_.end(), [](const SelectedChunk& a, const SelectedChunk& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.index < b.index;
+  });
+  constexpr std::uint64_t reclaimEvery = 32;
+  if (frame_ % reclaimEvery == 0) {
+    for (const NodeNumber root : roots_) {
+      reclaim(root);
+    }
+  }
+  figures_.nodes = pool_.used();
+}
+
+void ChunkTree::Implementation::reclaim(NodeNumber number) {
+  ChunkNode& node = pool_[number];
+  bool inUse = false;
+  for (int i = 0; i < node.childCount; ++i) {
+    const NodeNumber child = node.children[static_cast<std::size_t>(i)];
+    reclaim(child);
+    inUse = inUse || pool_[child].childCount > 0 || pool_[child].visitedFrame + patience >= frame_;
+  }
+  if (!inUse) {
+    giveChildren(node);
+  }
+}
+
+void ChunkTree::Implementation::giveChildren(ChunkNode& node) {
+  for (int i = 0; i < node.childCount; ++i) {
+    pool_.give(node.children[static_cast<std::size_t>(i)]);
+  }
+  node.childCount = 0;
+}
+
+ChunkTree::ChunkTree(const Tiling& tiling) : implementation_(std::make_unique<Implementation>(tiling)) {}
+ChunkTree::~ChunkTree() = default;
+ChunkTree::ChunkTree(ChunkTree&&) noexcept = default;
+ChunkTree& ChunkTree::operator=(ChunkTree&&) noexcept = default;
+
+void ChunkTree::select(std::span<const SelectionView> views, const SelectionSettings& settings,
+                       TileResidency& residency) {
+  implementation_->select(views, settings, residency);
+}
+
+std::span<const SelectedChunk> ChunkTree::selected() const {
+  return implementation_->selected();
+}
+
+const SelectionFigures& ChunkTree::figures() const {
+  return implementation_->figures();
+}
+
+void ChunkTree::clear() {
+  implementation_->clear();
+}
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,142 @@
+#include "globebrowsing/providers/default_tile_provider.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <system_error>
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+bool isDocument(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '<';
+}
+
+/// "WMS:...", "NETCDF:...", "https://...", "/vsizip/...": a driver's or a virtual file system's prefix.
+bool isConnection(std::string_view text) {
+  if (text.substr(0, 4) == "/vsi") {
+    return true;
+  }
+  const std::size_t colon = text.find(':');
+  return colon != std::string_view::npos && colon >= 2 &&
+         std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(colon),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '+' || c == '-'; });
+}
+
+std::optional<double> numberAt(const Value& table, std::string_view key) {
+  const Value* value = table.find(key);
+  return value == nullptr ? std::nullopt : value->number();
+}
+
+Result<std::optional<std::array<double, 4>>> extentOf(const ProviderRequest& request) {
+  const Value* value = request.table.find("ExtentDegrees");
+  if (value == nullptr || value->isNil()) {
+    return std::nullopt;
+  }
+  const std::vector<double> sides = value->numbers(4).value_or(std::vector<double>(4, 0.0));
+  if (!(sides[2] > sides[0]) || !(sides[3] > sides[1])) {
+    return failure("ExtentDegrees is empty or turned around", placeOf(request, "ExtentDegrees"),
+                   "give west, south, east, north in degrees, east greater than west and north greater than south");
+  }
+  return std::array<double, 4>{sides[0], sides[1], sides[2], sides[3]};
+}
+
+}  // namespace
+
+DataPath dataPath(const std::string& filePath, const std::string& folder) {
+  if (isDocument(filePath)) {
+    return {DataPath::Kind::Document, filePath};
+  }
+  if (isConnection(filePath)) {
+    return {DataPath::Kind::Connection, filePath};
+  }
+  const std::filesystem::path path(filePath);
+  return {DataPath::Kind::File,
+          (path.is_absolute() ? path : std::filesystem::path(folder) / path).lexically_normal().string()};
+}
+
+Result<void> checkData(const DataPath& path, const std::string& where) {
+  if (path.kind != DataPath::Kind::File) {
+    return {};
+  }
+  std::error_code code;
+  const std::filesystem::file_status status = std::filesystem::status(path.text, code);
+  if (!std::filesystem::exists(status)) {
+    return failure("the data file " + path.text + " does not exist", where,
+                   "check FilePath; a relative path starts at the asset's folder");
+  }
+  if (std::filesystem::is_directory(status)) {
+    return failure("the data file " + path.text + " is a directory", where, "name a file in it");
+  }
+  return {};
+}
+
+const Schema& DefaultTileProvider::schema() {
+  using Type = Schema::Type;
+  static const Schema fields(
+      {{"FilePath", Type::String,
+        "a raster file, relative to the asset's folder or absolute; or the text of a VRT or GDAL_WMS document; or a "
+        "GDAL connection string such as WMS:... or /vsicurl/...",
+        true},
+       {"TilePixelSize", Type::Integer, "pixels along a tile; tiles here are always 512 wide", false, 32.0, 2048.0},
+       {"ExtentDegrees", Type::Vector4,
+        "west, south, east and north edge in degrees, in place of the raster's own georeference", false, -360.0, 720.0},
+       {"HeightScale", Type::Number, "metres for one unit of a stored height, in place of the raster's own scale"},
+       {"HeightOffset", Type::Number, "metres added to stored heights, in place of the raster's own offset"},
+       {"HeightDatum", Type::Number,
+        "metres taken off the heights: the radius, where the raster stores heights as radii"}});
+  return fields;
+}
+
+Result<std::shared_ptr<TileProvider>> DefaultTileProvider::make(const ProviderRequest& request) {
+  const std::string& filePath = *request.table.find("FilePath")->string();
+  if (filePath.empty()) {
+    return failure("FilePath is empty", placeOf(request, "FilePath"), "name a raster");
+  }
+  auto extent = extentOf(request);
+  if (!extent) {
+    return tl::make_unexpected(std::move(extent.error()));
+  }
+  DataPath path = dataPath(filePath, request.folder);
+  RasterDescription description;
+  description.path = path.text;
+  description.where = placeOf(request, "FilePath");
+  description.extentDegrees = *extent;
+  description.heightScale = numberAt(request.table, "HeightScale");
+  description.heightOffset = numberAt(request.table, "HeightOffset");
+  description.heightDatum = numberAt(request.table, "HeightDatum");
+  return std::make_shared<DefaultTileProvider>(std::move(path), std::move(description));
+}
+
+Result<void> DefaultTileProvider::check() const {
+  return checkData(path_, description_.where);
+}
+
+Result<void> DefaultTileProvider::openData() {
+  return check()
+      .and_then([this] { return RasterSource::open(description_); })
+      .map([this](std::shared_ptr<RasterSource> source) { source_ = std::move(source); });
+}
+
+Result<ColourPixels> DefaultTileProvider::makeColours(const Tiling& tiling, const TileIndex& index,
+                                                      std::stop_token stop) const {
+  return resampleColours(*source_, tiling, index, colourLayout, std::move(stop));
+}
+
+Result<HeightPixels> DefaultTileProvider::makeHeights(const Tiling& tiling, const TileIndex& index,
+                                                      std::stop_token stop) const {
+  return resampleHeights(*source_, tiling, index, heightLayout, std::move(stop));
+}
+
+bool DefaultTileProvider::dataOverlap(const Tiling& tiling, const TileIndex& index) const {
+  return source_->overlaps(tiling, index);
+}
+
+bool DefaultTileProvider::dataFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const {
+  return source_->hasDataFiner(tiling, index, layout);
+}
+
+}  // namespace meridian::globebrowsing

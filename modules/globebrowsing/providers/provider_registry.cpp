@@ -1,0 +1,80 @@
+#include "globebrowsing/providers/provider_registry.h"
+
+#include <algorithm>
+#include <array>
+
+#include "globebrowsing/providers/default_tile_provider.h"
+#include "globebrowsing/providers/single_image_provider.h"
+#include "globebrowsing/providers/solid_colour_provider.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+std::string namesOfProviders() {
+  std::string names;
+  for (const ProviderType& type : providerTypes()) {
+    names.append(names.empty() ? "" : ", ").append(name(type.type));
+  }
+  return names;
+}
+
+const ProviderType* find(LayerType type) {
+  const std::span<const ProviderType> types = providerTypes();
+  const auto found = std::find_if(types.begin(), types.end(), [type](const auto& one) { return one.type == type; });
+  return found == types.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::span<const ProviderType> providerTypes() {
+  static const std::array types{ProviderType{LayerType::DefaultTileProvider, "any georeferenced raster",
+                                             &DefaultTileProvider::schema(), &DefaultTileProvider::make},
+                                ProviderType{LayerType::SingleImageProvider, "the whole of one image in every tile",
+                                             &SingleImageProvider::schema(), &SingleImageProvider::make},
+                                ProviderType{LayerType::SolidColor, "one colour everywhere",
+                                             &SolidColourProvider::schema(), &SolidColourProvider::make}};
+  return types;
+}
+
+std::string placeOf(const ProviderRequest& request, std::string_view key) {
+  std::string place = request.where;
+  place.append(place.empty() || request.path.empty() ? "" : ": ").append(request.path);
+  return place.append(request.path.empty() || key.empty() ? "" : ".").append(key);
+}
+
+Result<LayerType> layerTypeOf(const ProviderRequest& request) {
+  const Value* value = request.table.find("Type");
+  if (value == nullptr || value->isNil()) {
+    return LayerType::DefaultTileProvider;
+  }
+  const std::string* typeName = value->string();
+  if (typeName == nullptr) {
+    return failure("expected a string, found " + std::string(kindName(value->kind())), placeOf(request, "Type"),
+                   "use one of: " + namesOfProviders());
+  }
+  const std::optional<LayerType> type = layerTypeFromName(*typeName);
+  if (!type) {
+    return failure("unknown layer type \"" + *typeName + '"', placeOf(request, "Type"),
+                   "use one of: " + namesOfProviders());
+  }
+  if (find(*type) == nullptr) {
+    return failure("layers of type " + std::string(name(*type)) + " are not supported", placeOf(request, "Type"),
+                   "use one of: " + namesOfProviders());
+  }
+  return *type;
+}
+
+Result<std::shared_ptr<TileProvider>> makeProvider(const ProviderRequest& request) {
+  const Result<LayerType> type = layerTypeOf(request);
+  if (!type) {
+    return tl::make_unexpected(type.error());
+  }
+  const ProviderType& provider = *find(*type);
+  if (Result<void> valid = provider.schema->validate(request.table, request.where, request.path); !valid) {
+    return tl::make_unexpected(std::move(valid.error()));
+  }
+  return provider.make(request);
+}
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,93 @@
+#include "globebrowsing/providers/single_image_provider.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A single tile whose unit square is the whole map: it lets the resampler fit an image to any layout. Beyond the edges
+/// the image's outermost pixels go on.
+class WholeMapTiling final : public Tiling {
+ public:
+  using Tiling::Tiling;
+  [[nodiscard]] int rootCount() const override { return 1; }
+  [[nodiscard]] Children children(const TileIndex& /*index*/) const override { return {}; }
+  [[nodiscard]] std::optional<TileIndex> parent(const TileIndex& /*index*/) const override { return std::nullopt; }
+  [[nodiscard]] UnitSquareTransform inParent(const TileIndex& /*index*/) const override { return {}; }
+  [[nodiscard]] std::optional<Neighbour> neighbour(const TileIndex& /*index*/, Edge /*edge*/) const override {
+    return std::nullopt;
+  }
+  [[nodiscard]] GeodeticPosition geodetic(const TileIndex& /*index*/, const glm::dvec2& uv) const override {
+    const double u = std::clamp(uv.x, 0.0, 1.0);
+    const double v = std::clamp(uv.y, 0.0, 1.0);
+    return {pi * (0.5 - v), pi * (2.0 * u - 1.0), 0.0};
+  }
+  [[nodiscard]] TilePlace locate(double latitude, double longitude, int /*level*/) const override {
+    return {TileIndex{}, {longitude / (2.0 * pi) + 0.5, 0.5 - latitude / pi}};
+  }
+  [[nodiscard]] bool isSeparable() const override { return true; }
+};
+
+}  // namespace
+
+const Schema& SingleImageProvider::schema() {
+  static const Schema fields(
+      {{"FilePath", Schema::Type::String, "an image file, relative to the asset's folder or absolute", true}});
+  return fields;
+}
+
+Result<std::shared_ptr<TileProvider>> SingleImageProvider::make(const ProviderRequest& request) {
+  return std::make_shared<SingleImageProvider>(dataPath(*request.table.find("FilePath")->string(), request.folder),
+                                               placeOf(request, "FilePath"));
+}
+
+Result<void> SingleImageProvider::check() const {
+  return checkData(path_, where_);
+}
+
+Result<void> SingleImageProvider::openData() {
+  if (Result<void> checked = check(); !checked) {
+    return checked;
+  }
+  RasterDescription description;
+  description.path = path_.text;
+  description.where = where_;
+  description.assumeGlobal = true;
+  const Result<std::shared_ptr<RasterSource>> source = RasterSource::open(description);
+  if (!source) {
+    return tl::make_unexpected(source.error());
+  }
+  const Result<Ellipsoid> sphere = Ellipsoid::fromRadii(glm::dvec3(1.0));
+  const WholeMapTiling tiling(*sphere);
+  return resampleColours(**source, tiling, TileIndex{}, colourLayout, {})
+      .and_then([&](ColourPixels colours) {
+        colours_ = std::move(colours);
+        return resampleHeights(**source, tiling, TileIndex{}, heightLayout, {});
+      })
+      .map([this](HeightPixels heights) { heights_ = std::move(heights); });
+}
+
+Result<ColourPixels> SingleImageProvider::makeColours(const Tiling& /*tiling*/, const TileIndex& /*index*/,
+                                                      std::stop_token /*stop*/) const {
+  return colours_;
+}
+
+Result<HeightPixels> SingleImageProvider::makeHeights(const Tiling& /*tiling*/, const TileIndex& /*index*/,
+                                                      std::stop_token /*stop*/) const {
+  return heights_;
+}
+
+bool SingleImageProvider::dataOverlap(const Tiling& /*tiling*/, const TileIndex& /*index*/) const {
+  return true;
+}
+
+bool SingleImageProvider::dataFiner(const Tiling& /*tiling*/, const TileIndex& index,
+                                    const TileLayout& /*layout*/) const {
+  return index.level < maximumLevel;  // the next level shows the image again, four times smaller
+}
+
+}  // namespace meridian::globebrowsing

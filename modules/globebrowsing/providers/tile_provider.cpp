@@ -1,0 +1,83 @@
+#include "globebrowsing/providers/tile_provider.h"
+
+#include <exception>
+#include <string>
+#include <utility>
+
+namespace meridian::globebrowsing {
+
+std::optional<Error> TileProvider::error() const {
+  // error_ is written once, before Failed is published.
+  return state() == State::Failed ? error_ : std::nullopt;
+}
+
+Result<void> TileProvider::open() {
+  const std::lock_guard lock(opening_);
+  if (state() == State::Ready) {
+    return {};
+  }
+  if (state() == State::Failed) {
+    return tl::make_unexpected(*error_);
+  }
+  state_.store(State::Opening, std::memory_order_release);
+  Result<void> opened = openGuarded();
+  if (!opened) {
+    error_ = opened.error();
+  }
+  state_.store(opened ? State::Ready : State::Failed, std::memory_order_release);
+  return opened;
+}
+
+Result<void> TileProvider::openGuarded() {
+  // Libraries that read files may run out of memory on what a file claims.
+  try {
+    return openData();
+  } catch (const std::exception& exception) {
+    return failure(std::string("opening the data threw: ") + exception.what());
+  }
+}
+
+void TileProvider::openOn(WorkerPool& workers, std::shared_ptr<TileProvider> provider) {
+  State expected = State::NotOpened;
+  if (provider->state_.compare_exchange_strong(expected, State::Opening)) {
+    workers.post([provider = std::move(provider)](const std::stop_token&) {
+      // The outcome is kept in state() and error().
+      static_cast<void>(provider->open());
+    });
+  }
+}
+
+Result<void> TileProvider::requireReady() const {
+  switch (state()) {
+    case State::Ready:
+      return {};
+    case State::Failed:
+      return tl::make_unexpected(*error_);
+    case State::NotOpened:
+    case State::Opening:
+      break;
+  }
+  return failure("the provider is not open");
+}
+
+Result<ColourPixels> TileProvider::colours(const Tiling& tiling, const TileIndex& index, std::stop_token stop) const {
+  return requireReady().and_then([&] { return makeColours(tiling, index, std::move(stop)); });
+}
+
+Result<HeightPixels> TileProvider::heights(const Tiling& tiling, const TileIndex& index, std::stop_token stop) const {
+  return requireReady().and_then([&] { return makeHeights(tiling, index, std::move(stop)); });
+}
+
+bool TileProvider::overlaps(const Tiling& tiling, const TileIndex& index) const {
+  return state() == State::Ready && dataOverlap(tiling, index);
+}
+
+bool TileProvider::hasFinerColours(const Tiling& tiling, const TileIndex& index) const {
+  return state() == State::Ready && dataFiner(tiling, index, colourLayout);
+}
+
+bool TileProvider::hasFinerHeights(const Tiling& tiling, const TileIndex& index) const {
+  return state() == State::Ready && dataFiner(tiling, index, heightLayout);
+}
+
+}  // namespace meridian::globebrowsing

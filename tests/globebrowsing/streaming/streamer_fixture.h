@@ -1,0 +1,62 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <latch>
+#include <memory>
+#include <utility>
+
+#include "globebrowsing/streaming/tile_streamer.h"
+
+namespace meridian::globebrowsing {
+
+/// A tile of a given size that knows which it is.
+class CountedTile final : public TileData {
+ public:
+  CountedTile(const TileKey& key, std::size_t bytes) : key_(key), bytes_(bytes) {}
+  [[nodiscard]] std::size_t bytes() const override { return bytes_; }
+  [[nodiscard]] const TileKey& key() const { return key_; }
+
+ private:
+  TileKey key_;
+  std::size_t bytes_;
+};
+
+/// A job that does what the test says.
+class FunctionJob final : public TileJob {
+ public:
+  using Function = std::function<Result<TileDataPointer>(const std::stop_token&)>;
+  explicit FunctionJob(Function function) : function_(std::move(function)) {}
+  Result<TileDataPointer> run(const std::stop_token& stop) override { return function_(stop); }
+
+ private:
+  Function function_;
+};
+
+inline TileKey keyOf(std::uint32_t stream, std::uint32_t x) {
+  return {stream, {0, 5, x, 0}};
+}
+
+inline std::unique_ptr<TileJob> tileJob(const TileKey& key, std::size_t bytes) {
+  return std::make_unique<FunctionJob>(
+      [=](const std::stop_token&) { return TileDataPointer(std::make_shared<CountedTile>(key, bytes)); });
+}
+
+/// Keeps a worker busy until it is opened.
+class Gate {
+ public:
+  explicit Gate(WorkerPool& pool) {
+    pool.post([this](const std::stop_token&) {
+      entered_.count_down();
+      opened_.wait();
+    });
+    entered_.wait();
+  }
+  void open() { opened_.count_down(); }
+
+ private:
+  std::latch entered_{1};
+  std::latch opened_{1};
+};
+
+}  // namespace meridian::globebrowsing
