@@ -1,56 +1,41 @@
 #pragma once
 
-// Interface sketch for the first commit; the room that implements it refines it.
-
-#include <cstdint>
+#include <memory>
 #include <span>
 
-#include <glm/mat4x4.hpp>
-#include <glm/vec3.hpp>
-
+#include "globebrowsing/chunks/selection.h"
 #include "globebrowsing/streaming/tile_residency.h"
 #include "globebrowsing/tiling/tiling.h"
 
 namespace meridian::globebrowsing {
 
-/// One of the views that a selection serves.
-struct SelectionView {
-    glm::dvec3 cameraPosition{0.0};       ///< model space, metres
-    glm::dmat4 clipFromModel{1.0};        ///< for the four side planes and the near plane (reversed depth, infinite far)
-    double pixelsPerRadian = 0.0;
-};
+/// Chooses the chunks of a globe that are drawn: one set for all views, without holes and without overlaps, as fine as
+/// the settings ask and as what is in memory allows. A pure algorithm: it knows tiles by index only and asks a
+/// TileResidency for the rest.
+///
+/// A steady selection (nothing new is visited) allocates nothing. One thread at a time.
+class ChunkTree {
+ public:
+  /// The tiling must outlive the tree.
+  explicit ChunkTree(const Tiling& tiling);
+  ~ChunkTree();
+  ChunkTree(ChunkTree&&) noexcept;
+  ChunkTree& operator=(ChunkTree&&) noexcept;
 
-enum class Evaluator { ScreenSpaceError, Distance, ProjectedArea, AvailableData };
+  /// Selects anew, once per frame. Views that are not finite (or look nowhere) are left out; without any view left,
+  /// nothing is selected and only the roots are kept. At most 32 views.
+  void select(std::span<const SelectionView> views, const SelectionSettings& settings, TileResidency& residency);
 
-struct SelectionSettings {
-    Evaluator evaluator = Evaluator::ScreenSpaceError;
-    double scale = 1.0;               ///< texels per pixel aimed at; 2 is sharper and dearer, 0.5 coarser
-    double compositeTexels = 512.0;   ///< along a side of a tile
-    double maximumErrorPixels = 0.5;  ///< of geometry
-    bool frustumCulling = true;
-    bool horizonCulling = true;
-    double lowestHeight = 0.0;        ///< metres, at most 0: the least height drawn anywhere on the globe
-    int deepestLevel = 30;
-};
+  /// What to draw, from near to far; valid until the next select.
+  [[nodiscard]] std::span<const SelectedChunk> selected() const;
+  [[nodiscard]] const SelectionFigures& figures() const;
 
-/// A chunk to draw.
-struct SelectedChunk {
-    TileIndex index;
-    int step = 0;                 ///< 0..4: 2, 4, 8, 16, 32 segments a side
-    std::uint32_t views = 0;      ///< bit i: visible in view i
-    double distance = 0.0;        ///< metres, from the nearest camera to the nearest point of its bounds
-    double error = 0.0;           ///< metres, of the surface as drawn
-};
+  /// Forgets every node, as after a change of what the globe is made of.
+  void clear();
 
-/// What the last selection did.
-struct SelectionFigures {
-    std::uint32_t visited = 0;
-    std::uint32_t nodes = 0;           ///< in the tree now
-    std::uint32_t culledFrustum = 0;
-    std::uint32_t culledHorizon = 0;
-    std::uint32_t kicked = 0;          ///< chunks not drawn because a replacement was incomplete
-    bool atTarget = false;             ///< every chunk drawn is the one that the settings ask for, and complete
-    std::uint32_t missing = 0;         ///< target chunks that are not complete
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
 };
 
 }  // namespace meridian::globebrowsing

@@ -8,31 +8,31 @@
 namespace meridian::globebrowsing {
 
 /// A reference ellipsoid with any three semi-axes. Model space: metres, origin at the centre, +z the north pole, +x the
-/// prime meridian. Geodetic latitude and longitude are the angles of the outward surface normal, on triaxial bodies too:
-/// normal = (cos lat cos lon, cos lat sin lon, sin lat).
+/// prime meridian. Geodetic latitude and longitude are the angles of the outward surface normal, on triaxial bodies
+/// too: normal = (cos lat cos lon, cos lat sin lon, sin lat).
 ///
 /// Spheres and spheroids go through GeographicLib::Geocentric; triaxial bodies by Newton's method on the foot point.
 /// Accuracy: 1e-8 m and 1e-12 rad within 5000 km of the surface of an Earth-sized spheroid. Degenerate input: at a pole
 /// the longitude is 0; at the centre the answer is the end of the shortest axis; never not-a-number for finite input.
 class Ellipsoid {
-public:
-    /// Errors: a semi-axis that is not finite or not positive.
-    [[nodiscard]] static Result<Ellipsoid> fromRadii(const glm::dvec3& radii);
+ public:
+  /// Errors: a semi-axis that is not finite or not positive.
+  [[nodiscard]] static Result<Ellipsoid> fromRadii(const glm::dvec3& radii);
 
-    [[nodiscard]] const glm::dvec3& radii() const { return radii_; }
-    [[nodiscard]] double minimumRadius() const;
-    [[nodiscard]] double maximumRadius() const;
-    [[nodiscard]] bool isSphere() const { return radii_.x == radii_.y && radii_.x == radii_.z; }
-    /// Rotationally symmetric about z (a sphere is one too).
-    [[nodiscard]] bool isSpheroid() const { return radii_.x == radii_.y; }
+  [[nodiscard]] const glm::dvec3& radii() const { return radii_; }
+  [[nodiscard]] double minimumRadius() const;
+  [[nodiscard]] double maximumRadius() const;
+  [[nodiscard]] bool isSphere() const { return radii_.x == radii_.y && radii_.x == radii_.z; }
+  /// Rotationally symmetric about z (a sphere is one too).
+  [[nodiscard]] bool isSpheroid() const { return radii_.x == radii_.y; }
 
-    [[nodiscard]] glm::dvec3 normal(double latitude, double longitude) const;
-    [[nodiscard]] glm::dvec3 cartesian(const GeodeticPosition& position) const;
-    [[nodiscard]] GeodeticPosition geodetic(const glm::dvec3& position) const;
+  [[nodiscard]] glm::dvec3 normal(double latitude, double longitude) const;
+  [[nodiscard]] glm::dvec3 cartesian(const GeodeticPosition& position) const;
+  [[nodiscard]] GeodeticPosition geodetic(const glm::dvec3& position) const;
 
-private:
-    explicit Ellipsoid(const glm::dvec3& radii) : radii_(radii) {}
-    glm::dvec3 radii_;
+ private:
+  explicit Ellipsoid(const glm::dvec3& radii) : radii_(radii) {}
+  glm::dvec3 radii_;
 };
 
 }  // namespace meridian::globebrowsing

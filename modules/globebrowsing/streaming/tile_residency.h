@@ -6,39 +6,39 @@ namespace meridian::globebrowsing {
 
 /// The range of heights, in metres above the ellipsoid, that a tile's surface is known to stay within.
 struct HeightRange {
-    double minimum = 0.0;
-    double maximum = 0.0;
+  double minimum = 0.0;
+  double maximum = 0.0;
 };
 
 /// What selection may know of what is in memory. Declared here so that the chunk tree needs neither OpenGL nor layers;
 /// implemented by gpu/. All calls on the render thread, for tiles of the globe's tiling; none allocates in a steady
 /// frame.
 class TileResidency {
-public:
-    enum class State {
-        Nothing,   ///< it cannot be drawn yet
-        Drawable,  ///< its surface is there; its colours come from an ancestor, or are of an earlier setting
-        Complete   ///< nothing that it wants is missing (what failed for good counts as there)
-    };
+ public:
+  enum class State {
+    Nothing,   ///< it cannot be drawn yet
+    Drawable,  ///< its surface is there; its colours come from an ancestor, or are of an earlier setting
+    Complete   ///< nothing that it wants is missing (what failed for good counts as there)
+  };
 
-    virtual ~TileResidency() = default;
+  virtual ~TileResidency() = default;
 
-    /// Asks for all that the tile needs, this frame; a greater priority is served first. What is not asked for again in
-    /// the next frame is cancelled or becomes evictable.
-    virtual void want(const TileIndex& index, double priority) = 0;
-    /// Keeps what the tile has from being evicted this frame, without asking for more.
-    virtual void keep(const TileIndex& index) = 0;
-    [[nodiscard]] virtual State state(const TileIndex& index) const = 0;
+  /// Asks for all that the tile needs, this frame; a greater priority is served first. What is not asked for again in
+  /// the next frame is cancelled or becomes evictable.
+  virtual void want(const TileIndex& index, double priority) = 0;
+  /// Keeps what the tile has from being evicted this frame, without asking for more.
+  virtual void keep(const TileIndex& index) = 0;
+  [[nodiscard]] virtual State state(const TileIndex& index) const = 0;
 
-    /// Of the tile's own height tile, else of its nearest ancestor with one, else of the layers' declared range.
-    [[nodiscard]] virtual HeightRange heightRange(const TileIndex& index) const = 0;
-    /// Grows whenever heightRange(index) may have changed; equal numbers mean an equal range.
-    [[nodiscard]] virtual unsigned heightVersion(const TileIndex& index) const = 0;
-    /// Metres between the tile's surface drawn with 2, 4, 8, 16, 32 segments a side (`step` 0..4) and drawn at its
-    /// height tile's nodes. Estimated from the ellipsoid and the parent while there is no height tile.
-    [[nodiscard]] virtual double geometricError(const TileIndex& index, int step) const = 0;
-    /// Whether some enabled colour layer has finer data within this tile than the tile's own composite shows.
-    [[nodiscard]] virtual bool hasFinerColours(const TileIndex& index) const = 0;
+  /// Of the tile's own height tile, else of its nearest ancestor with one, else of the layers' declared range.
+  [[nodiscard]] virtual HeightRange heightRange(const TileIndex& index) const = 0;
+  /// Grows whenever heightRange(index) may have changed; equal numbers mean an equal range.
+  [[nodiscard]] virtual unsigned heightVersion(const TileIndex& index) const = 0;
+  /// Metres between the tile's surface drawn with 2, 4, 8, 16, 32 segments a side (`step` 0..4) and drawn at its
+  /// height tile's nodes. Estimated from the ellipsoid and the parent while there is no height tile.
+  [[nodiscard]] virtual double geometricError(const TileIndex& index, int step) const = 0;
+  /// Whether some enabled colour layer has finer data within this tile than the tile's own composite shows.
+  [[nodiscard]] virtual bool hasFinerColours(const TileIndex& index) const = 0;
 };
 
 }  // namespace meridian::globebrowsing

@@ -11,12 +11,12 @@ namespace meridian::globebrowsing {
 /// Names one tile of a tiling. x counts columns eastward (or along the face's u), y rows from the north (or the face's
 /// v = 0), both from 0 within the root.
 struct TileIndex {
-    std::uint8_t root = 0;
-    std::uint8_t level = 0;
-    std::uint32_t x = 0;
-    std::uint32_t y = 0;
+  std::uint8_t root = 0;
+  std::uint8_t level = 0;
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
 
-    auto operator<=>(const TileIndex&) const = default;
+  auto operator<=>(const TileIndex&) const = default;
 };
 
 /// No tiling is deeper: 2^-23 of an Earth radius is under a metre, 8 more levels reach below a centimetre.
@@ -29,5 +29,5 @@ inline constexpr int maximumLevel = 30;
 
 template <>
 struct std::hash<meridian::globebrowsing::TileIndex> {
-    std::size_t operator()(const meridian::globebrowsing::TileIndex& index) const noexcept;
+  std::size_t operator()(const meridian::globebrowsing::TileIndex& index) const noexcept;
 };

@@ -1,0 +1,159 @@
+#include "globebrowsing/chunks/chunk_surface.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace meridian::globebrowsing {
+
+/// Every node's ellipsoid normal and displaced position, apron included.
+struct ChunkSurface::Nodes {
+  std::vector<glm::dvec3> normals;
+  std::vector<glm::dvec3> positions;
+
+  [[nodiscard]] static std::size_t at(int column, int row) {
+    return static_cast<std::size_t>(row + apron) * heightSide + static_cast<std::size_t>(column + apron);
+  }
+};
+
+namespace {
+
+glm::dvec2 nodeUv(int column, int row) {
+  constexpr double cells = ChunkSurface::nodes - 1;
+  return {column / cells, row / cells};
+}
+
+std::array<float, 3> narrow(const glm::dvec3& vector) {
+  return {static_cast<float>(vector.x), static_cast<float>(vector.y), static_cast<float>(vector.z)};
+}
+
+std::int16_t signedNormalised(double value) {
+  return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0, 1.0) * 32767.0));
+}
+
+}  // namespace
+
+glm::dvec3 bilinear(const std::array<glm::dvec3, 4>& corners, const glm::dvec2& uv) {
+  const glm::dvec3 north = corners[0] + (corners[1] - corners[0]) * uv.x;
+  const glm::dvec3 south = corners[2] + (corners[3] - corners[2]) * uv.x;
+  return north + (south - north) * uv.y;
+}
+
+ChunkSurface::ChunkSurface(const Tiling& tiling, const TileIndex& index, std::vector<float> heights)
+    : heights_(std::move(heights)) {
+  assert(heights_.size() == static_cast<std::size_t>(heightSide) * heightSide);
+  Nodes all;
+  all.normals.resize(heights_.size());
+  all.positions.resize(heights_.size());
+  range_ = {height(0, 0), height(0, 0)};
+  const Ellipsoid& ellipsoid = tiling.ellipsoid();
+  for (int row = -apron; row < nodes + apron; ++row) {
+    for (int column = -apron; column < nodes + apron; ++column) {
+      GeodeticPosition position = tiling.geodetic(index, nodeUv(column, row));
+      position.height = height(column, row);
+      all.normals[Nodes::at(column, row)] = ellipsoid.normal(position.latitude, position.longitude);
+      all.positions[Nodes::at(column, row)] = ellipsoid.cartesian(position);
+      const bool inside = row >= 0 && row < nodes && column >= 0 && column < nodes;
+      if (inside) {
+        range_.minimum = std::min(range_.minimum, position.height);
+        range_.maximum = std::max(range_.maximum, position.height);
+      }
+    }
+  }
+  corners_ = {tiling.position(index, {0.0, 0.0}), tiling.position(index, {1.0, 0.0}),
+              tiling.position(index, {0.0, 1.0}), tiling.position(index, {1.0, 1.0})};
+  makeVertices(all);
+  makeNormals(all);
+  for (int step = 0; step < chunk_grid::steps; ++step) {
+    errors_[static_cast<std::size_t>(step)] = errorAt(all, step);
+  }
+}
+
+float ChunkSurface::height(int column, int row) const {
+  return heights_[Nodes::at(column, row)];
+}
+
+void ChunkSurface::makeVertices(const Nodes& all) {
+  constexpr int stride = (nodes - 1) / chunk_grid::segments;
+  vertices_.resize(chunk_grid::vertexCount);
+  for (int i = 0; i < chunk_grid::vertexCount; ++i) {
+    const chunk_grid::Place place = chunk_grid::place(i);
+    const int column = place.column * stride;
+    const int row = place.row * stride;
+    const glm::dvec3& normal = all.normals[Nodes::at(column, row)];
+    const double metres = height(column, row);
+    const glm::dvec3 onEllipsoid = all.positions[Nodes::at(column, row)] - normal * metres;
+    vertices_[static_cast<std::size_t>(i)] = {
+        narrow(onEllipsoid - bilinear(corners_, nodeUv(column, row))),
+        static_cast<float>(metres),
+        narrow(normal),
+        {static_cast<std::uint8_t>(place.column), static_cast<std::uint8_t>(place.row),
+         static_cast<std::uint8_t>(place.skirt ? 1 : 0), 0}};
+  }
+}
+
+void ChunkSurface::makeNormals(const Nodes& all) {
+  normalOffsets_.resize(static_cast<std::size_t>(nodes) * nodes);
+  std::size_t out = 0;
+  for (int row = 0; row < nodes; ++row) {
+    for (int column = 0; column < nodes; ++column) {
+      const glm::dvec3& vertical = all.normals[Nodes::at(column, row)];
+      const glm::dvec3 east = all.positions[Nodes::at(column + 1, row)] - all.positions[Nodes::at(column - 1, row)];
+      const glm::dvec3 south = all.positions[Nodes::at(column, row + 1)] - all.positions[Nodes::at(column, row - 1)];
+      const glm::dvec3 across = glm::cross(south, east);
+      const double length = glm::length(across);
+      // At a pole a whole row is one point: there the ellipsoid's normal has to do.
+      glm::dvec3 normal = length > 1e-9 * glm::dot(south, south) ? across / length : vertical;
+      if (glm::dot(normal, vertical) < 0.0) {
+        normal = -normal;
+      }
+      const glm::dvec3 offset = normal - vertical;
+      normalOffsets_[out++] = {signedNormalised(offset.x), signedNormalised(offset.y), signedNormalised(offset.z), 0};
+    }
+  }
+}
+
+double ChunkSurface::errorAt(const Nodes& all, int step) const {
+  const int stride = (nodes - 1) / chunk_grid::segmentsAt(step);
+  double largest = 0.0;
+  for (int row = 0; row < nodes - 1; row += stride) {
+    for (int column = 0; column < nodes - 1; column += stride) {
+      const glm::dvec3& northWest = all.positions[Nodes::at(column, row)];
+      const glm::dvec3& southEast = all.positions[Nodes::at(column + stride, row + stride)];
+      const glm::dvec3 west = all.positions[Nodes::at(column, row + stride)] - northWest;
+      const glm::dvec3 south = southEast - all.positions[Nodes::at(column, row + stride)];
+      const glm::dvec3 north = all.positions[Nodes::at(column + stride, row)] - northWest;
+      const glm::dvec3 east = southEast - all.positions[Nodes::at(column + stride, row)];
+      for (int j = 0; j <= stride; ++j) {
+        for (int i = 0; i <= stride; ++i) {
+          const double a = static_cast<double>(i) / stride;
+          const double b = static_cast<double>(j) / stride;
+          const glm::dvec3 drawn = northWest + (a <= b ? west * b + south * a : north * a + east * b);
+          const std::size_t node = Nodes::at(column + i, row + j);
+          largest = std::max(largest, std::abs(glm::dot(all.positions[node] - drawn, all.normals[node])));
+        }
+      }
+    }
+  }
+  return largest;
+}
+
+double ChunkSurface::heightAt(const glm::dvec2& uv) const {
+  const glm::dvec2 place = glm::clamp(uv, 0.0, 1.0) * static_cast<double>(nodes - 1);
+  const int column = std::min(static_cast<int>(place.x), nodes - 2);
+  const int row = std::min(static_cast<int>(place.y), nodes - 2);
+  const double a = place.x - column;
+  const double b = place.y - row;
+  const double north = (1.0 - a) * height(column, row) + a * height(column + 1, row);
+  const double south = (1.0 - a) * height(column, row + 1) + a * height(column + 1, row + 1);
+  return (1.0 - b) * north + b * south;
+}
+
+std::size_t ChunkSurface::bytes() const {
+  return sizeof(*this) + heights_.size() * sizeof(float) + vertices_.size() * sizeof(SurfaceVertex) +
+         normalOffsets_.size() * sizeof(NormalOffset);
+}
+
+}  // namespace meridian::globebrowsing

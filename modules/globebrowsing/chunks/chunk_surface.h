@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "globebrowsing/chunks/chunk_grid.h"
+#include "globebrowsing/streaming/tile_data.h"
+#include "globebrowsing/streaming/tile_residency.h"
+#include "globebrowsing/tiling/tiling.h"
+
+namespace meridian::globebrowsing {
+
+/// One vertex as the GPU gets it. Position in model space, relative to the camera:
+/// P = bilinear(corners - camera, place) + offset + height * normal (Lambers & Kolb 2012, section 4).
+struct SurfaceVertex {
+  std::array<float, 3> offset{};        ///< metres, from the bilinear patch of the corners to the ellipsoid
+  float height = 0.0F;                  ///< metres above the ellipsoid
+  std::array<float, 3> normal{};        ///< of the ellipsoid
+  std::array<std::uint8_t, 4> place{};  ///< column, row (0..32), 1 for a skirt's foot, unused
+};
+static_assert(sizeof(SurfaceVertex) == 32);
+
+/// The shape of one tile: its composed height tile, and all that is derived from it, once, in double, on a worker.
+/// Bounds, picking, heightAt, normals and vertices all come from the same heights, so they cannot disagree.
+class ChunkSurface final : public TileData {
+ public:
+  static constexpr int nodes = 129;  ///< a side, node-registered: the first and last lie on the edges
+  static constexpr int apron = 1;    ///< nodes beyond each edge, for normals
+  static constexpr int heightSide = nodes + 2 * apron;
+  /// A texel of the normals, signed 16-bit normalised: unit surface normal minus ellipsoid normal, in model space.
+  using NormalOffset = std::array<std::int16_t, 4>;
+
+  /// `heights`: heightSide x heightSide metres, row by row from the north-west, none of them not-a-number.
+  ChunkSurface(const Tiling& tiling, const TileIndex& index, std::vector<float> heights);
+
+  /// On the ellipsoid, model space: north-west, north-east, south-west, south-east.
+  [[nodiscard]] const std::array<glm::dvec3, 4>& corners() const { return corners_; }
+  [[nodiscard]] const HeightRange& heightRange() const { return range_; }
+  /// Metres between the surface drawn at that step (0..4) and at every node: the largest, along the normal.
+  [[nodiscard]] double error(int step) const { return errors_[static_cast<std::size_t>(step)]; }
+  [[nodiscard]] std::span<const SurfaceVertex> vertices() const { return vertices_; }
+  /// nodes x nodes, rows from the north.
+  [[nodiscard]] std::span<const NormalOffset> normalOffsets() const { return normalOffsets_; }
+  /// Bilinear between the nodes; uv is clamped to the tile.
+  [[nodiscard]] double heightAt(const glm::dvec2& uv) const;
+
+  [[nodiscard]] std::size_t bytes() const override;
+
+ private:
+  struct Nodes;
+  [[nodiscard]] float height(int column, int row) const;
+  void makeVertices(const Nodes& nodes);
+  void makeNormals(const Nodes& nodes);
+  [[nodiscard]] double errorAt(const Nodes& nodes, int step) const;
+
+  std::vector<float> heights_;
+  std::array<glm::dvec3, 4> corners_{};
+  HeightRange range_;
+  std::array<double, chunk_grid::steps> errors_{};
+  std::vector<SurfaceVertex> vertices_;
+  std::vector<NormalOffset> normalOffsets_;
+};
+
+/// The point of the patch that four corners (north-west, north-east, south-west, south-east) span.
+[[nodiscard]] glm::dvec3 bilinear(const std::array<glm::dvec3, 4>& corners, const glm::dvec2& uv);
+
+}  // namespace meridian::globebrowsing

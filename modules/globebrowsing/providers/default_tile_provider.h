@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "globebrowsing/providers/provider_registry.h"
+#include "globebrowsing/source/raster_source.h"
+
+namespace meridian::globebrowsing {
+
+/// What the `FilePath` of an asset means.
+struct DataPath {
+  enum class Kind {
+    File,       ///< of the file system; `text` is absolute when the folder is
+    Document,   ///< the text of a VRT or GDAL_WMS document
+    Connection  ///< any other name that GDAL knows: WMS:..., NETCDF:"...":v, /vsicurl/...
+  };
+  Kind kind = Kind::File;
+  std::string text;
+};
+[[nodiscard]] DataPath dataPath(const std::string& filePath, const std::string& folder);
+/// Of a File: that it is there and no directory. Nothing can be said of the others.
+[[nodiscard]] Result<void> checkData(const DataPath& path, const std::string& where);
+
+/// Any georeferenced raster, cut into tiles: DefaultTileProvider.
+class DefaultTileProvider final : public TileProvider {
+ public:
+  /// FilePath, and ours: ExtentDegrees, HeightScale, HeightOffset, HeightDatum.
+  [[nodiscard]] static const Schema& schema();
+  [[nodiscard]] static Result<std::shared_ptr<TileProvider>> make(const ProviderRequest& request);
+
+  explicit DefaultTileProvider(DataPath path, RasterDescription description)
+      : path_(std::move(path)), description_(std::move(description)) {}
+
+  [[nodiscard]] Result<void> check() const override;
+  [[nodiscard]] const RasterDescription& description() const { return description_; }
+
+ private:
+  [[nodiscard]] Result<void> openData() override;
+  [[nodiscard]] Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
+                                                 std::stop_token stop) const override;
+  [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index,
+                                                 std::stop_token stop) const override;
+  [[nodiscard]] bool dataOverlap(const Tiling& tiling, const TileIndex& index) const override;
+  [[nodiscard]] bool dataFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const override;
+
+  DataPath path_;
+  RasterDescription description_;
+  std::shared_ptr<RasterSource> source_;
+};
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "globebrowsing/providers/layer_type.h"
+#include "globebrowsing/providers/tile_provider.h"
+#include "host/api/error.h"
+#include "host/api/schema.h"
+#include "host/api/value.h"
+
+namespace meridian::globebrowsing {
+
+/// What a provider is made from.
+struct ProviderRequest {
+  Value table;         ///< the layer's table; the provider's keys lie flat among the layer's own
+  std::string where;   ///< file and line of the asset, for errors
+  std::string path;    ///< of the table within the asset: "Renderable.Layers.ColorLayers[1]"
+  std::string folder;  ///< of the asset file; relative paths start there
+};
+
+/// One type of provider. To add one: write the class, add its line in provider_registry.cpp.
+struct ProviderType {
+  LayerType type = LayerType::DefaultTileProvider;
+  std::string description;
+  const Schema* schema = nullptr;  ///< of the provider's own keys
+  /// Gets a table that has passed the schema. No input or output.
+  Result<std::shared_ptr<TileProvider>> (*make)(const ProviderRequest& request) = nullptr;
+};
+
+[[nodiscard]] std::span<const ProviderType> providerTypes();
+
+/// The type that the table's `Type` names; DefaultTileProvider without one. Errors: an unknown type, or one that has no
+/// provider here; the remedy lists those that have.
+[[nodiscard]] Result<LayerType> layerTypeOf(const ProviderRequest& request);
+
+/// Checks the table against its type's schema and makes the provider, unopened.
+[[nodiscard]] Result<std::shared_ptr<TileProvider>> makeProvider(const ProviderRequest& request);
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+
+#include "globebrowsing/source/resample.h"
+#include "globebrowsing/streaming/worker_pool.h"
+#include "globebrowsing/tiling/tiling.h"
+#include "host/api/error.h"
+
+namespace meridian::globebrowsing {
+
+/// Where a layer's tiles come from: one class per layer type, made from the layer's asset table without any input or
+/// output (provider_registry.h), then checked by --validate or opened by a worker. Safe from any thread.
+class TileProvider {
+ public:
+  enum class State { NotOpened, Opening, Ready, Failed };
+
+  TileProvider() = default;
+  TileProvider(const TileProvider&) = delete;
+  TileProvider& operator=(const TileProvider&) = delete;
+  virtual ~TileProvider() = default;
+
+  /// False for what a shader makes by itself (SolidColor); then colours, heights and overlaps are of no use.
+  [[nodiscard]] virtual bool hasTiles() const { return true; }
+  /// Whether the local data exist, without opening them: what makes a layer usable for --validate.
+  [[nodiscard]] virtual Result<void> check() const { return {}; }
+
+  [[nodiscard]] State state() const { return state_.load(std::memory_order_acquire); }
+  /// Why it could not be opened; nothing unless Failed.
+  [[nodiscard]] std::optional<Error> error() const;
+
+  /// Opens unless it is open, on this thread; may read from disk or network. A call during another's waits for it. The
+  /// first outcome stays.
+  Result<void> open();
+  /// The same on a worker: Opening at once.
+  static void openOn(WorkerPool& workers, std::shared_ptr<TileProvider> provider);
+
+  /// One tile in colourLayout or heightLayout. Blocking; on a worker. Errors: not Ready; what cannot be read;
+  /// "cancelled" after a stop.
+  [[nodiscard]] Result<ColourPixels> colours(const Tiling& tiling, const TileIndex& index, std::stop_token stop) const;
+  [[nodiscard]] Result<HeightPixels> heights(const Tiling& tiling, const TileIndex& index, std::stop_token stop) const;
+
+  /// Whether there is anything within the tile; false unless Ready. No input or output.
+  [[nodiscard]] bool overlaps(const Tiling& tiling, const TileIndex& index) const;
+  /// Whether there is finer data within the tile than its colours (its heights) show; false unless Ready. No input or
+  /// output.
+  [[nodiscard]] bool hasFinerColours(const Tiling& tiling, const TileIndex& index) const;
+  [[nodiscard]] bool hasFinerHeights(const Tiling& tiling, const TileIndex& index) const;
+
+ private:
+  /// Called once, before any of the following; those only after it succeeded.
+  [[nodiscard]] virtual Result<void> openData() = 0;
+  [[nodiscard]] virtual Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
+                                                         std::stop_token stop) const = 0;
+  [[nodiscard]] virtual Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index,
+                                                         std::stop_token stop) const = 0;
+  [[nodiscard]] virtual bool dataOverlap(const Tiling& tiling, const TileIndex& index) const = 0;
+  [[nodiscard]] virtual bool dataFiner(const Tiling& tiling, const TileIndex& index,
+                                       const TileLayout& layout) const = 0;
+
+  [[nodiscard]] Result<void> requireReady() const;
+
+  std::atomic<State> state_{State::NotOpened};
+  mutable std::mutex mutex_;  ///< held while opening
+  std::optional<Error> error_;
+  std::atomic<bool> errorKnown_{false};
+};
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,17 @@
+// What gpu/chunk_blocks.h declares for C++, field by field.
+layout(std140, binding = 0) uniform ViewBlock {
+    mat4 clipFromRelative;  // from model axes with their origin at the eye
+    vec3 lightDirection;    // unit, model axes, towards the light
+    float ambient;
+    float opacity;
+} view;
+
+layout(std140, binding = 1) uniform ChunkBlock {
+    vec4 corners[4];        // north-west, north-east, south-west, south-east; relative to the eye, model axes
+    vec4 base;              // composite's texture coordinate = xy + zw * unit square
+    vec4 night;
+    vec4 overlay;
+    vec4 layers;            // of the composites' array: base, night, overlay (below 0: none); w: of the normals' array
+    float skirt;            // metres
+    float level;
+} chunk;

@@ -1,0 +1,128 @@
+#include "globebrowsing/chunks/chunk_surface.h"
+
+#include <cmath>
+#include <random>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "globebrowsing/tiling/geodetic_tiling.h"
+
+namespace meridian::globebrowsing {
+namespace {
+
+constexpr int side = ChunkSurface::heightSide;
+
+const GeodeticTiling& earth() {
+  static const GeodeticTiling tiling(*Ellipsoid::fromRadii({6378137.0, 6378137.0, 6356752.314245}));
+  return tiling;
+}
+
+/// A height for every place of the globe, so that neighbouring tiles agree.
+float relief(const GeodeticPosition& position) {
+  return static_cast<float>(3000.0 * std::sin(40.0 * position.longitude) * std::cos(60.0 * position.latitude));
+}
+
+std::vector<float> heightsOf(const TileIndex& index, float (*height)(const GeodeticPosition&)) {
+  std::vector<float> out;
+  for (int row = -1; row < side - 1; ++row) {
+    for (int column = -1; column < side - 1; ++column) {
+      out.push_back(height(earth().geodetic(index, {column / 128.0, row / 128.0})));
+    }
+  }
+  return out;
+}
+
+glm::dvec3 drawn(const ChunkSurface& surface, const SurfaceVertex& vertex) {
+  const auto wide = [](const std::array<float, 3>& v) { return glm::dvec3(v[0], v[1], v[2]); };
+  return bilinear(surface.corners(), {vertex.place[0] / 32.0, vertex.place[1] / 32.0}) + wide(vertex.offset) +
+         wide(vertex.normal) * static_cast<double>(vertex.height);
+}
+
+TEST(ChunkSurface, VerticesLieOnTheDisplacedEllipsoid) {
+  for (const TileIndex index : {TileIndex{0, 3, 2, 3}, TileIndex{1, 9, 100, 200}, TileIndex{1, 16, 9000, 20000}}) {
+    const ChunkSurface surface(earth(), index, heightsOf(index, relief));
+    const double edge = glm::distance(surface.corners()[0], surface.corners()[3]);
+    for (const SurfaceVertex& vertex : surface.vertices()) {
+      GeodeticPosition place = earth().geodetic(index, {vertex.place[0] / 32.0, vertex.place[1] / 32.0});
+      place.height = relief(place);
+      // Floats of the offset, which is at most a part of the edge, and of the height.
+      EXPECT_LT(glm::distance(drawn(surface, vertex), earth().ellipsoid().cartesian(place)), edge * 1e-7 + 2e-3);
+    }
+  }
+}
+
+TEST(ChunkSurface, ErrorFallsWithDensityAndIsThatOfTheCoarseMesh) {
+  const TileIndex index{1, 4, 3, 5};
+  const ChunkSurface surface(earth(), index, heightsOf(index, relief));
+  for (int step = 1; step < chunk_grid::steps; ++step) {
+    EXPECT_LT(surface.error(step), surface.error(step - 1));
+  }
+  EXPECT_GT(surface.error(0), 100.0);
+}
+
+TEST(ChunkSurface, ErrorOfABareSphericalTileIsItsSagitta) {
+  const GeodeticTiling sphere(*Ellipsoid::fromRadii(glm::dvec3(1e6)));
+  const TileIndex equator{1, 6, 20, 31};
+  const ChunkSurface surface(sphere, equator, std::vector<float>(side * side, 0.0F));
+  const double step = glm::radians(180.0 / 64.0) / 32.0;
+  const double diagonal = step * std::sqrt(2.0);
+  EXPECT_NEAR(surface.error(4), 1e6 * (1.0 - std::cos(diagonal / 2.0)), 1e6 * 1e-3 * (1.0 - std::cos(diagonal / 2.0)));
+}
+
+TEST(ChunkSurface, NormalsOfAFlatSurfaceAreTheEllipsoids) {
+  const TileIndex index{1, 5, 7, 0};
+  const ChunkSurface surface(earth(), index, std::vector<float>(side * side, 500.0F));
+  for (const ChunkSurface::NormalOffset& offset : surface.normalOffsets()) {
+    for (const std::int16_t component : offset) {
+      EXPECT_LE(std::abs(component), 40);  // of 32767
+    }
+  }
+}
+
+TEST(ChunkSurface, NeighboursAgreeOnTheirSharedEdgeToTheBit) {
+  const TileIndex west{1, 7, 40, 50};
+  const Neighbour east = *earth().neighbour(west, Edge::East);
+  const ChunkSurface a(earth(), west, heightsOf(west, relief));
+  const ChunkSurface b(earth(), east.index, heightsOf(east.index, relief));
+  for (int row = 0; row <= 128; ++row) {
+    EXPECT_EQ(a.heightAt({1.0, row / 128.0}), b.heightAt({0.0, row / 128.0}));
+  }
+  EXPECT_EQ(a.corners()[1], b.corners()[0]);
+  EXPECT_EQ(a.corners()[3], b.corners()[2]);
+}
+
+TEST(ChunkGrid, EveryDensityCoversTheTileOnceAndFacesOutwards) {
+  for (int step = 0; step < chunk_grid::steps; ++step) {
+    const std::vector<std::uint16_t> indices = chunk_grid::indices(step);
+    double area = 0.0;
+    for (int i = 0; i < chunk_grid::gridIndexCount(step); i += 3) {
+      const auto corner = [&](int n) {
+        const chunk_grid::Place p = chunk_grid::place(indices[static_cast<std::size_t>(i + n)]);
+        return glm::dvec2(p.column / 32.0, -p.row / 32.0);
+      };
+      const glm::dvec2 a = corner(1) - corner(0);
+      const glm::dvec2 b = corner(2) - corner(0);
+      const double twice = a.x * b.y - a.y * b.x;
+      EXPECT_GT(twice, 0.0) << "clockwise triangle";
+      area += twice / 2.0;
+    }
+    EXPECT_NEAR(area, 1.0, 1e-12);
+  }
+}
+
+TEST(ChunkGrid, SkirtsFaceAwayFromTheTile) {
+  const std::vector<std::uint16_t> indices = chunk_grid::indices(0);
+  for (std::size_t i = static_cast<std::size_t>(chunk_grid::gridIndexCount(0)); i < indices.size(); i += 3) {
+    const auto corner = [&](std::size_t n) {
+      const chunk_grid::Place p = chunk_grid::place(indices[i + n]);
+      return glm::dvec3(p.column / 32.0, -p.row / 32.0, p.skirt ? -1.0 : 0.0);
+    };
+    const glm::dvec3 normal = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+    const glm::dvec3 middle = (corner(0) + corner(1) + corner(2)) / 3.0;
+    EXPECT_GT(glm::dot(normal, glm::dvec3(middle.x - 0.5, middle.y + 0.5, 0.0)), 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace meridian::globebrowsing
