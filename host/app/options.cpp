@@ -204,6 +204,9 @@ Result<void> rejectConflicts(const Options& options) {
   if (options.play && options.record) {
     return conflict("--play", "--record", "the session would record what it plays");
   }
+  if (options.play && options.camera) {
+    return conflict("--play", "--camera", "the recording moves the camera");
+  }
   if (options.validate) {
     const std::pair<std::string_view, bool> drawing[] = {
         {"--output", options.output.has_value()}, {"--play", options.play.has_value()},

@@ -15,7 +15,7 @@ struct RotationModel;
 /// A named set of axes. Known names, in any case: J2000 and ICRF (one and the same, as in SPICE), B1950, GALACTIC,
 /// ECLIPJ2000, IAU_body for every body of rotationModels(), and ITRF93 (the Earth by ERFA; see icrfFromTerrestrial).
 ///
-/// GALACTIC is SPICE's: the galactic system of 1958 applied to SPICE's own B1950 axes. eraIcrs2g differs from it by a
+/// GALACTIC is SPICE's: the galactic system of 1958 applied to SPICE's own FK4 axes. eraIcrs2g differs from it by a
 /// fraction of an arcsecond.
 class Frame {
  public:

@@ -32,6 +32,7 @@ class SceneNode final : public PropertyOwner {
   explicit SceneNode(Parts parts);
 
   [[nodiscard]] SceneNode* parentNode() const { return parts_.parent; }
+  [[nodiscard]] const Translation* translation() const { return parts_.translation.get(); }
   [[nodiscard]] int depth() const { return depth_; }  ///< of the root: 0
   [[nodiscard]] Renderable* renderable() const { return parts_.renderable.get(); }
   /// Null unless the renderable is something to stand on.
@@ -39,7 +40,7 @@ class SceneNode final : public PropertyOwner {
   /// Metres in the node's own frame: the asset's, else the renderable's, else 0.
   [[nodiscard]] double boundingSphere() const;
 
-  [[nodiscard]] const std::string& guiName() const { return guiName_; }
+  [[nodiscard]] const std::string& guiName() const { return name(); }
   [[nodiscard]] const std::string& guiPath() const { return parts_.guiPath; }
   [[nodiscard]] bool isGuiHidden() const { return parts_.guiHidden; }
 
@@ -50,7 +51,6 @@ class SceneNode final : public PropertyOwner {
 
  private:
   Parts parts_;
-  std::string guiName_;
   int depth_ = 0;
   Transform parentFromNode_;
 };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "host/api/error.h"
 #include "host/api/value.h"
 
@@ -14,5 +16,8 @@ void pushValue(lua_State* lua, const Value& value);
 /// tables inside themselves; tables deeper than 32 levels; more than a million entries; keys that are neither strings
 /// nor numbers. The stack is left as it was.
 [[nodiscard]] Result<Value> toValue(lua_State* lua, int index);
+
+/// "CHUNK:LINE" of the Lua code that calls the C++ function that asks; empty when no Lua code does.
+[[nodiscard]] std::string callerPlace(lua_State* lua);
 
 }  // namespace meridian::scripting

@@ -38,6 +38,8 @@ class PropertyAnimation {
   void advance(double seconds);
   [[nodiscard]] bool isMoving(const Property& property) const;
   [[nodiscard]] bool isIdle() const { return records_.empty(); }
+  /// Where post scripts go.
+  [[nodiscard]] const std::function<void(std::string)>& runLater() const { return runLater_; }
 
  private:
   struct Record {
