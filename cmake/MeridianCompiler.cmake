@@ -11,7 +11,7 @@ endif()
 add_library(meridian-compiler INTERFACE)
 target_compile_options(meridian-compiler INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -Woverloaded-virtual -Werror
-  # GCC 12 warns of overlapping copies within its own std::string (GCC bug 105651).
+  # GCC 12 sees overlapping copies where strings are concatenated (its bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   # Geometry is checked against other libraries to the last bits: no contraction behind our back.
   -ffp-contract=off)
