@@ -3,8 +3,8 @@
 
 usage: check_house.py ROOT
 
-Reads the #include lines of all sources and the room targets that the CMakeLists.txt files link. Prints one line for each
-breach and exits with 1 if there is any:
+Reads the #include lines of all sources and the room targets that the CMakeLists.txt files link. Prints one line for
+each breach and exits with 1 if there is any:
 - a room includes or links a room that is not on a lower floor, or one that has no floor;
 - rooms know each other in a circle;
 - a room that must be free of OpenGL includes an OpenGL header or knows a room that is not free of it;
@@ -23,7 +23,8 @@ HOST_FLOORS = [["api"], ["graphics", "ephemeris", "scripting"], ["scene"], ["ass
 MODULE_FLOORS = [["geodesy"], ["tiling"], ["network"], ["source"], ["streaming", "terrain"], ["providers"], ["layers"],
                  ["gpu", "chunks"], ["surface"], [""]]
 FLOOR = {f"host/{room}": (0, level) for level, rooms in enumerate(HOST_FLOORS) for room in rooms}
-FLOOR |= {f"globebrowsing/{room}".rstrip("/"): (1, level) for level, rooms in enumerate(MODULE_FLOORS) for room in rooms}
+FLOOR |= {f"globebrowsing/{room}".rstrip("/"): (1, level)
+          for level, rooms in enumerate(MODULE_FLOORS) for room in rooms}
 WITH_OPENGL = {"host/graphics", "host/ui", "host/app", "globebrowsing/gpu", "globebrowsing/surface", "globebrowsing"}
 HOST_FOR_MODULE = {"host/api", "host/graphics"}
 OPENGL_HEADER = re.compile(r"(epoxy|GL|GLES\d?|EGL|GLFW)/|glad/|imgui")
