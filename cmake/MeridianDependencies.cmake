@@ -15,7 +15,8 @@ endmacro()
 
 meridian_pkg_config(ERFA erfa)
 meridian_pkg_config(GEOGRAPHICLIB geographiclib)
-meridian_pkg_config(LUA lua5.4)
+# The build that throws C++ exceptions: a Lua error then unwinds our frames.
+meridian_pkg_config(LUA lua5.4-c++)
 if(MERIDIAN_GRAPHICS)
   meridian_pkg_config(EPOXY epoxy)
   meridian_pkg_config(EGL egl)

@@ -40,6 +40,14 @@ class Renderable : public PropertyOwner {
   /// Null unless it is something to stand on.
   [[nodiscard]] virtual Ground* ground() { return nullptr; }
 
+  /// What `--validate` counts. Known as soon as it is made.
+  struct Contents {
+    std::size_t globes = 0;
+    std::size_t layers = 0;
+    std::size_t usableLayers = 0;  ///< their provider can be built and their local data exist
+  };
+  [[nodiscard]] virtual Contents contents() const { return {}; }
+
   BoolProperty enabled{{"Enabled", "Enabled", "Whether it is drawn"}, true};
   FloatProperty opacity{{"Opacity", "Opacity", "0 is invisible, 1 opaque"}, 1.0, {0.0, 1.0}};
 

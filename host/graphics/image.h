@@ -34,7 +34,7 @@ struct PngOptions {
 [[nodiscard]] Result<void> writePng(const std::filesystem::path& file, std::span<const std::uint8_t> pixels,
                                     glm::ivec2 size, const PngOptions& options = {});
 
-/// Reads any PNG as RGBA. Errors: no such file, not a PNG, damaged, or larger than 32768 pixels along a side.
+/// Reads any PNG as RGBA. Errors: no such file, not a PNG, damaged, or larger than 16384 pixels along a side.
 [[nodiscard]] Result<Image> readPng(const std::filesystem::path& file);
 
 }  // namespace meridian::graphics

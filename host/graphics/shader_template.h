@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -10,16 +11,27 @@
 
 namespace meridian::graphics {
 
-/// GLSL ready for the compiler. Its `#line` directives number the files, so that messages can name them.
+/// GLSL ready for the compiler, and where each of its lines came from.
+///
+/// The origin is kept here rather than in `#line` directives, because Mesa's compiler reports many errors with source
+/// number 0, whatever the directive said.
 struct ShaderSource {
+  struct Origin {
+    std::uint32_t file;  ///< in `files`
+    std::uint32_t line;  ///< from 1
+  };
+
   std::string text;
-  std::vector<std::string>
-      files;  ///< by the number in `#line`: "surface/chunk.vert", "#{layers} in surface/chunk.frag"
+  std::vector<std::string> files;  ///< "surface/chunk.vert", "#{layers} in surface/chunk.frag"
+  std::vector<Origin> origins{};   ///< of each line of the text; lines beyond it are the first file's
 
   /// A compiler's log with "0:12(5)" and "0(12)" and "ERROR: 0:12:" turned into "surface/chunk.vert:12".
   [[nodiscard]] std::string readableLog(std::string_view log) const;
   /// "surface/chunk.vert:12" of the first message in a compiler's log; the first file when it names no line.
   [[nodiscard]] std::string firstPlace(std::string_view log) const;
+
+ private:
+  [[nodiscard]] std::string place(std::size_t line) const;
 };
 
 /// What `#{name}` stands for.

@@ -34,7 +34,7 @@ class Layer final : public PropertyOwner {
   enum class Change { Structure, Settings };
 
   Layer(LayerDescription description, LayerGroupId group, const LayerServices& services,
-        std::function<void(Change)> changed);
+        std::function<void(const Layer&, Change)> changed);
   ~Layer() override;
 
   [[nodiscard]] LayerGroupId group() const { return group_; }
@@ -100,8 +100,8 @@ class Layer final : public PropertyOwner {
   std::shared_ptr<TileProvider> provider_;
   LayerServices services_;
   std::uint32_t stream_ = 0;
-  std::function<void(Change)> changed_;
-  TileProvider::State seen_ = TileProvider::State::NotOpened;
+  std::function<void(const Layer&, Change)> changed_;
+  TileProvider::State seenState_ = TileProvider::State::NotOpened;
   const Error* seenError_ = nullptr;
   bool wantsRemoval_ = false;
   bool quiet_ = false;  ///< SetDefault tells once, not three times

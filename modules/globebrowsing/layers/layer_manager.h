@@ -53,7 +53,9 @@ class LayerGroup final : public PropertyOwner {
       true};
 
  private:
-  void changed(const Layer* layer, Layer::Change change);
+  [[nodiscard]] std::vector<std::unique_ptr<Layer>>::const_iterator place(std::string_view identifier) const;
+  [[nodiscard]] Error noSuchLayer(std::string_view layer) const;
+  void changed(const Layer& layer, Layer::Change change);
   void restructure();
 
   LayerGroupId id_;
@@ -67,6 +69,7 @@ class LayerGroup final : public PropertyOwner {
 /// All layers of a globe: the owner `Layers`. Render thread only.
 class LayerManager final : public PropertyOwner {
  public:
+  /// The services outlive the manager.
   explicit LayerManager(const LayerServices& services = {});
 
   /// An asset's `Layers`: groups by name, each a list of layer tables. What is wrong is left out and told; the rest

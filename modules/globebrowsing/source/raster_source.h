@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -90,6 +91,9 @@ class RasterSource {
   [[nodiscard]] bool overlaps(const Tiling& tiling, const TileIndex& index) const;
   /// Whether the raster has pixels within the tile that are finer than the tile's samples. No input or output.
   [[nodiscard]] bool hasDataFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const;
+
+  /// Pixels kept in memory. Safe from any thread; grows as the raster is sampled, freed with the source.
+  [[nodiscard]] std::size_t residentBytes() const;
 
   /// For resampling; of no use outside this room.
   [[nodiscard]] RasterAccess& access() const { return *access_; }

@@ -1,0 +1,163 @@
+#include "host/app/run_loop.h"
+
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "host/api/log.h"
+#include "host/app/interruption.h"
+
+namespace meridian::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Workers have two cores with us: between two looks at an incomplete view they may have both.
+constexpr auto settlePause = 2ms;
+constexpr auto minimisedPause = 50ms;
+constexpr auto progressInterval = 5s;
+
+double millisecondsSince(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace
+
+Result<void> RunLoop::run() {
+  while (!isStopped() && !isDone()) {
+    if (auto drawn = frame(); !drawn) {
+      return drawn;
+    }
+    tellProgress();
+  }
+  const bool hasAnEnd = options_.frames || options_.output || parts_.window == nullptr;
+  if (isInterrupted() && hasAnEnd && !isDone()) {
+    return failure(fmt::format("interrupted after {} frames", frames_));
+  }
+  return {};
+}
+
+bool RunLoop::isStopped() const {
+  return quit_ || isInterrupted() || (parts_.window != nullptr && parts_.window->shouldClose());
+}
+
+bool RunLoop::isDone() const {
+  if (options_.frames && frames_ >= *options_.frames) {
+    return true;
+  }
+  const bool watched = parts_.window != nullptr && parts_.writer == nullptr;
+  if (options_.play) {
+    return parts_.session.hasPlayed() && !watched;
+  }
+  return parts_.window == nullptr && !options_.frames && frames_ >= 1;
+}
+
+glm::ivec2 RunLoop::pictureSize() const {
+  const bool followsWindow = parts_.window != nullptr && parts_.writer == nullptr;
+  return followsWindow ? parts_.window->framebufferSize() : options_.size;
+}
+
+Result<void> RunLoop::frame() {
+  const auto begin = Clock::now();
+  if (parts_.window != nullptr) {
+    graphics::WindowContext::pollEvents();
+    if (const bool wanted = parts_.application.renderSettings().verticalSync.get(); wanted != verticalSync_) {
+      parts_.window->setVerticalSync(wanted);
+      verticalSync_ = wanted;
+    }
+  }
+  if (auto advanced = parts_.session.advance(); !advanced) {
+    return advanced;
+  }
+  if (auto drawn = drawUntilSettled(begin); !drawn) {
+    return drawn;
+  }
+  parts_.application.statistics().endFrame();
+  ++frames_;
+  return writePicture();
+}
+
+Result<void> RunLoop::drawOnce(Clock::time_point begin, double deltaSeconds) {
+  Statistics::Frame& figures = parts_.application.statistics().frame;
+  figures = {};
+  SceneRenderer& renderer = parts_.renderer;
+  renderer.beginFrame();
+  const SceneRenderer::Moment moment{parts_.application.clock().time(), deltaSeconds, parts_.session.wallSeconds(),
+                                     drawings_++};
+  const graphics::RenderTarget::Shape shape{pictureSize(), parts_.application.renderSettings().antialiasing.get()};
+  if (auto drawn = renderer.draw(moment, parts_.application.camera(), shape); !drawn) {
+    return drawn;
+  }
+  present();
+  renderer.endFrame();
+  figures.cpu = millisecondsSince(begin);
+  if (parts_.window != nullptr) {
+    parts_.window->swapBuffers();
+    renderer.markFrame();
+  } else {
+    renderer.waitForFrame();
+  }
+  figures.frame = millisecondsSince(begin);
+  return {};
+}
+
+void RunLoop::present() {
+  if (parts_.window == nullptr) {
+    return;
+  }
+  const glm::ivec2 size = parts_.window->framebufferSize();
+  if (size.x <= 0 || size.y <= 0) {
+    std::this_thread::sleep_for(minimisedPause);
+    return;
+  }
+  parts_.renderer.target().blit(0, size);
+  if (parts_.panels != nullptr) {
+    parts_.panels->draw();
+  }
+}
+
+Result<void> RunLoop::drawUntilSettled(Clock::time_point begin) {
+  if (auto drawn = drawOnce(begin, parts_.session.deltaSeconds()); !drawn || !options_.settleSeconds) {
+    return drawn;
+  }
+  auto& figures = parts_.application.statistics().settled;
+  const auto start = Clock::now();
+  Settled settled = parts_.renderer.settled();
+  while (!settled.complete && !isStopped() && millisecondsSince(start) < 1000.0 * *options_.settleSeconds) {
+    std::this_thread::sleep_for(settlePause);
+    if (parts_.window != nullptr) {
+      graphics::WindowContext::pollEvents();
+    }
+    if (auto drawn = drawOnce(Clock::now(), 0.0); !drawn) {
+      return drawn;
+    }
+    settled = parts_.renderer.settled();
+  }
+  figures.waitMs += millisecondsSince(start);
+  if (settled.complete) {
+    ++figures.framesSettled;
+  } else {
+    ++figures.framesTimedOut;
+    log::warning("frame {} is not complete: {}", frames_, settled.reason);
+  }
+  return {};
+}
+
+Result<void> RunLoop::writePicture() {
+  if (parts_.writer == nullptr) {
+    return {};
+  }
+  const graphics::RenderTarget& target = parts_.renderer.target();
+  return parts_.writer->write({target.size(), target.readPixels(), {}});
+}
+
+void RunLoop::tellProgress() {
+  if (parts_.window != nullptr || Clock::now() - lastTold_ < progressInterval) {
+    return;
+  }
+  lastTold_ = Clock::now();
+  log::info("{} frames{}", frames_, options_.frames ? fmt::format(" of {}", *options_.frames) : std::string());
+}
+
+}  // namespace meridian::app

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "host/api/error.h"
+#include "host/app/application.h"
+#include "host/app/options.h"
+#include "host/recording/player.h"
+#include "host/recording/recorder.h"
+#include "host/scripting/frame_timer.h"
+
+namespace meridian::app {
+
+/// What moves the scene from one frame to the next: scripts, clock, animations, and the camera by a recording or by the
+/// mouse. The application must outlive it.
+class Session {
+ public:
+  /// Opens what `--play` and `--record` name. With --play the clock starts at the recording's time unless --time says
+  /// otherwise. `fixedStep`: frames last 1 / fps instead of what they took.
+  /// Errors: a recording that cannot be read, or be written.
+  [[nodiscard]] static Result<std::unique_ptr<Session>> create(Application& application, const Options& options,
+                                                               bool fixedStep);
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// One frame later: scripts, clock, animations, scene transforms, camera, in this order. The first frame is at the
+  /// start. Errors: the recording cannot be written any more.
+  [[nodiscard]] Result<void> advance();
+  /// Writes the end of what is recorded.
+  [[nodiscard]] Result<void> finish();
+
+  /// Simulation seconds between this frame and the one before.
+  [[nodiscard]] double deltaSeconds() const { return deltaSeconds_; }
+  /// Frame seconds since the start.
+  [[nodiscard]] double wallSeconds() const { return timer_.total(); }
+  [[nodiscard]] bool isPlaying() const { return player_ && !player_->finished(); }
+  [[nodiscard]] bool hasPlayed() const { return player_ && player_->finished(); }
+
+ private:
+  Session(Application& application, scripting::FrameTimer timer) : application_(application), timer_(timer) {}
+  Result<void> openPlayer(const Options& options);
+  Result<void> openRecorder(const Options& options);
+
+  Application& application_;
+  scripting::FrameTimer timer_;
+  std::optional<recording::Player> player_;
+  std::optional<recording::Recorder> recorder_;
+  double deltaSeconds_ = 0.0;
+};
+
+}  // namespace meridian::app

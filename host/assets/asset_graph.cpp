@@ -1,0 +1,266 @@
+#include "host/assets/asset_graph.h"
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <lua.hpp>
+
+#include "host/api/log.h"
+#include "host/assets/asset_table.h"
+
+namespace meridian::assets {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uintmax_t largestAsset = std::uintmax_t{16} << 20;
+
+fs::path withExtension(const fs::path& path) {
+  std::error_code ignored;
+  fs::path extended = path;
+  extended += ".asset";
+  if (path.extension() == ".asset" || (path.has_extension() && !fs::is_regular_file(extended, ignored))) {
+    return path;
+  }
+  return extended;
+}
+
+Result<std::string> readAsset(const fs::path& file) {
+  std::error_code error;
+  if (fs::is_directory(file, error)) {
+    return failure("this is a folder, not an asset", file.string());
+  }
+  if (!fs::is_regular_file(file, error)) {
+    return failure("no such asset", file.string(), "check the path");
+  }
+  if (fs::file_size(file, error) > largestAsset) {
+    return failure(fmt::format("the asset is larger than {} MiB", largestAsset >> 20), file.string());
+  }
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) {
+    return failure("the asset cannot be read", file.string(), "check its permissions");
+  }
+  return text.str();
+}
+
+/// While an asset's code runs it is the current one.
+class Running {
+ public:
+  Running(std::vector<Asset*>& stack, Asset& asset) : stack_(stack) { stack_.push_back(&asset); }
+  ~Running() { stack_.pop_back(); }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+ private:
+  std::vector<Asset*>& stack_;
+};
+
+}  // namespace
+
+Result<fs::path> AssetGraph::resolve(std::string_view path, const Asset* from) const {
+  if (path.empty() || path.find('\0') != std::string_view::npos) {
+    return failure("the path of an asset is empty or holds a zero");
+  }
+  const bool besideAsset = path.starts_with("./") || path.starts_with("../");
+  Result<fs::path> expanded = tokens_->expand(path);
+  if (!expanded) {
+    return expanded;
+  }
+  fs::path whole = *expanded;
+  if (!whole.is_absolute()) {
+    const fs::path* assets = tokens_->find("ASSETS");
+    std::error_code ignored;
+    whole = besideAsset && from != nullptr ? from->file.parent_path() / whole
+            : assets != nullptr            ? *assets / whole
+                                           : fs::absolute(whole, ignored);
+  }
+  const fs::path file = withExtension(whole.lexically_normal());
+  std::error_code error;
+  fs::path real = fs::weakly_canonical(file, error);
+  return error ? file : real;
+}
+
+Asset* AssetGraph::find(const fs::path& file) const {
+  const auto found = byFile_.find(file);
+  return found == byFile_.end() ? nullptr : found->second;
+}
+
+Asset& AssetGraph::load(const fs::path& file, bool enabled) {
+  if (Asset* known = find(file)) {
+    return *known;
+  }
+  Asset& asset = *assets_.emplace_back(std::make_unique<Asset>());
+  asset.file = file;
+  byFile_.emplace(file, &asset);
+  if (Result<void> done = runFile(asset, enabled); !done) {
+    fail(asset, std::move(done.error()));
+  } else {
+    asset.state = Asset::State::Loaded;
+  }
+  return asset;
+}
+
+Result<void> AssetGraph::runFile(Asset& asset, bool enabled) {
+  const Result<std::string> text = readAsset(asset.file);
+  if (!text) {
+    return tl::make_unexpected(text.error());
+  }
+  tokens_->allowReading(asset.file.parent_path());
+  lua_State* lua = engine_->state();
+  makeAssetTable(lua, *this, asset, enabled);
+  const Running running(running_, asset);
+  if (Result<void> loaded = engine_->load(*text, asset.file.string()); !loaded) {
+    return loaded;
+  }
+  setGlobals(lua, asset);
+  return engine_->call(0, 0);
+}
+
+Result<Asset*> AssetGraph::require(Asset& parent, std::string_view path, bool enabled) {
+  const Result<fs::path> file = resolve(path, &parent);
+  if (!file) {
+    return tl::make_unexpected(file.error());
+  }
+  if (const Asset* known = find(*file);
+      known != nullptr && (known->state == Asset::State::Loading || known->state == Asset::State::Initializing)) {
+    std::string circle;
+    for (auto link = std::find(running_.begin(), running_.end(), known); link != running_.end(); ++link) {
+      circle += (*link)->file.filename().string() + " -> ";
+    }
+    return failure("assets require each other in a circle: " + circle + known->file.filename().string());
+  }
+  Asset& asset = load(*file, enabled);
+  const bool late = parent.state != Asset::State::Loading;
+  if (asset.state == Asset::State::Failed || (late && !initialize(asset))) {
+    return failure(fmt::format("the required asset \"{}\" failed: {}", path, asset.errors.front().message()));
+  }
+  if (std::find(parent.required.begin(), parent.required.end(), &asset) == parent.required.end()) {
+    parent.required.push_back(&asset);
+  }
+  return &asset;
+}
+
+bool AssetGraph::initialize(Asset& asset) {
+  if (asset.state != Asset::State::Loaded) {
+    return asset.state == Asset::State::Initialized;
+  }
+  asset.state = Asset::State::Initializing;
+  // By index: onInitialize may require more.
+  for (std::size_t i = 0; i < asset.required.size(); ++i) {
+    Asset& each = *asset.required[i];
+    if (!initialize(each)) {
+      fail(asset, {fmt::format("the required asset failed: {}",
+                               each.errors.empty() ? each.file.string() : each.errors.front().message()),
+                   asset.file.string()});
+      return false;
+    }
+  }
+  for (std::size_t i = 0; i < asset.onInitialize.size(); ++i) {
+    if (Result<void> done = callFunction(asset, asset.onInitialize[i]); !done) {
+      fail(asset, std::move(done.error()));
+      return false;
+    }
+  }
+  asset.state = Asset::State::Initialized;
+  initialized_.push_back(&asset);
+  return true;
+}
+
+Result<void> AssetGraph::callFunction(Asset& asset, int reference) {
+  const Running running(running_, asset);
+  lua_rawgeti(engine_->state(), LUA_REGISTRYINDEX, reference);
+  return engine_->call(0, 0);
+}
+
+void AssetGraph::fail(Asset& asset, Error error) {
+  asset.state = Asset::State::Failed;
+  asset.errors.push_back(std::move(error));
+}
+
+void AssetGraph::sweep() {
+  std::set<const Asset*> needed;
+  std::vector<Asset*> open;
+  for (const auto& asset : assets_) {
+    if (asset->isRoot) {
+      open.push_back(asset.get());
+    }
+  }
+  while (!open.empty()) {
+    Asset* asset = open.back();
+    open.pop_back();
+    if (needed.insert(asset).second) {
+      open.insert(open.end(), asset->required.begin(), asset->required.end());
+    }
+  }
+  const std::vector<Asset*> order(initialized_.rbegin(), initialized_.rend());
+  for (Asset* asset : order) {
+    if (needed.count(asset) != 0) {
+      continue;
+    }
+    for (auto function = asset->onDeinitialize.rbegin(); function != asset->onDeinitialize.rend(); ++function) {
+      if (const Result<void> done = callFunction(*asset, *function); !done) {
+        log::error("{}", done.error().message());
+      }
+    }
+  }
+  std::erase_if(initialized_, [&](const Asset* asset) { return needed.count(asset) == 0; });
+  std::erase_if(assets_, [&](const std::unique_ptr<Asset>& asset) {
+    if (needed.count(asset.get()) != 0) {
+      return false;
+    }
+    forget(*asset);
+    return true;
+  });
+}
+
+void AssetGraph::forget(Asset& asset) {
+  lua_State* lua = engine_->state();
+  // Functions that other assets kept may still call `asset`: its table goes, so that they get an error and no ghost.
+  if (asset.table != 0) {
+    lua_rawgeti(lua, LUA_REGISTRYINDEX, asset.table);
+    lua_pushnil(lua);
+    while (lua_next(lua, -2) != 0) {
+      lua_pop(lua, 1);
+      lua_pushvalue(lua, -1);
+      lua_pushnil(lua);
+      lua_rawset(lua, -4);
+    }
+    lua_pop(lua, 1);
+  }
+  for (const int reference : {asset.table, asset.exports}) {
+    luaL_unref(lua, LUA_REGISTRYINDEX, reference == 0 ? LUA_NOREF : reference);
+  }
+  for (const auto* references : {&asset.onInitialize, &asset.onDeinitialize}) {
+    for (const int reference : *references) {
+      luaL_unref(lua, LUA_REGISTRYINDEX, reference);
+    }
+  }
+  byFile_.erase(asset.file);
+}
+
+std::string AssetGraph::nameOf(const Asset& asset) const {
+  std::string name;
+  if (asset.table == 0) {
+    return name;
+  }
+  lua_State* lua = engine_->state();
+  lua_rawgeti(lua, LUA_REGISTRYINDEX, asset.table);
+  lua_pushliteral(lua, "meta");
+  if (lua_rawget(lua, -2) == LUA_TTABLE) {
+    lua_pushliteral(lua, "Name");
+    if (lua_rawget(lua, -2) == LUA_TSTRING) {
+      name = lua_tostring(lua, -1);
+    }
+    lua_pop(lua, 1);
+  }
+  lua_pop(lua, 2);
+  return name;
+}
+
+}  // namespace meridian::assets

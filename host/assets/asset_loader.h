@@ -1,0 +1,66 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/api/error.h"
+#include "host/api/script_library.h"
+#include "host/api/value.h"
+#include "host/assets/path_tokens.h"
+#include "host/scripting/script_engine.h"
+
+namespace meridian::assets {
+
+/// What assets build: the scene.
+class AssetTarget {
+ public:
+  virtual ~AssetTarget() = default;
+  /// `where` is "FILE:LINE" of the call; `folder` is what relative paths in the table are relative to.
+  virtual Result<void> addNode(const Value& table, const std::string& where, const std::string& folder) = 0;
+  virtual Result<void> removeNode(const std::string& identifier) = 0;
+  [[nodiscard]] virtual bool hasNode(const std::string& identifier) const = 0;
+};
+
+/// How one asset fared.
+struct AssetReport {
+  std::filesystem::path file;
+  std::string name;  ///< of asset.meta; empty without
+  bool ok = true;
+  std::vector<Error> errors;
+};
+
+/// Loads `.asset` files with what they require, and initialises them, required ones first. An error fails its asset and
+/// those that require it; all others go on. Adds `openspace.addSceneGraphNode`, `removeSceneGraphNode`,
+/// `hasSceneGraphNode` and `openspace.asset.*` (add, remove, isLoaded, allAssets, rootAssets) to the engine.
+///
+/// Engine, tokens and target must outlive it. Render thread only.
+class AssetLoader {
+ public:
+  AssetLoader(scripting::ScriptEngine& engine, PathTokens& tokens, AssetTarget& target);
+  ~AssetLoader();
+  AssetLoader(const AssetLoader&) = delete;
+  AssetLoader& operator=(const AssetLoader&) = delete;
+
+  /// Loads and initialises a root asset. `path` is a file of the machine (relative to the working folder), or a path as
+  /// in asset.require. Adding it again does nothing. The error is that of the root; reports() has all of them.
+  Result<void> add(std::string_view path);
+  /// Runs onDeinitialize of a root asset and of what only it required, parents first; forgets them.
+  Result<void> remove(std::string_view path);
+  void removeAll();
+
+  /// Every asset that was reached, in the order of loading. Assets that failed are in it until they are removed.
+  [[nodiscard]] std::vector<AssetReport> reports() const;
+  [[nodiscard]] bool isLoaded(std::string_view path) const;
+
+  /// Folder of the asset whose code runs now; ${ASSETS} outside of one.
+  [[nodiscard]] std::string currentFolder() const;
+
+ private:
+  struct Private;
+  std::unique_ptr<Private> private_;
+};
+
+}  // namespace meridian::assets

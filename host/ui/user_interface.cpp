@@ -1,0 +1,96 @@
+#include "host/ui/user_interface.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include "host/graphics/default_state.h"
+#include "host/ui/imgui_panel_builder.h"
+
+namespace meridian::ui {
+namespace {
+
+class ImGuiInterface final : public UserInterface {
+ public:
+  ImGuiInterface() : context_(ImGui::CreateContext()) {
+    ImGui::GetIO().IniFilename = nullptr;  // no file in whatever folder we were started in
+    ImGui::StyleColorsDark();
+    ImGui::GetStyle().Colors[ImGuiCol_WindowBg].w = 0.8F;
+  }
+  ImGuiInterface(const ImGuiInterface&) = delete;
+  ImGuiInterface& operator=(const ImGuiInterface&) = delete;
+  ~ImGuiInterface() override {
+    ImGui::SetCurrentContext(context_);
+    if (drawing_) {
+      ImGui_ImplOpenGL3_Shutdown();
+    }
+    if (listening_) {
+      ImGui_ImplGlfw_Shutdown();
+    }
+    ImGui::DestroyContext(context_);
+  }
+
+  [[nodiscard]] bool start(GLFWwindow* window) {
+    listening_ = ImGui_ImplGlfw_InitForOpenGL(window, true);
+    drawing_ = listening_ && ImGui_ImplOpenGL3_Init("#version 450 core");
+    return drawing_;
+  }
+
+  void add(std::unique_ptr<Panel> panel) override { panels_.push_back(std::move(panel)); }
+
+  void draw() override {
+    if (!visible_) {
+      return;
+    }
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    buildPanels();
+    ImGui::Render();
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    graphics::applyDefaultState();
+  }
+
+  void setVisible(bool visible) override { visible_ = visible; }
+  [[nodiscard]] bool isVisible() const override { return visible_; }
+  [[nodiscard]] bool hasMouse() const override { return visible_ && ImGui::GetIO().WantCaptureMouse; }
+  [[nodiscard]] bool hasKeyboard() const override { return visible_ && ImGui::GetIO().WantTextInput; }
+
+ private:
+  void buildPanels() {
+    // They start one below the other. How high they are ImGui knows after having built them once or twice.
+    const ImGuiCond place = ImGui::GetFrameCount() <= framesToPlace ? ImGuiCond_Always : ImGuiCond_FirstUseEver;
+    constexpr float margin = 10.0F;
+    float top = margin;
+    for (const auto& panel : panels_) {
+      ImGui::SetNextWindowPos({margin, top}, place);
+      ImGui::SetNextWindowSizeConstraints({0.0F, 0.0F}, {10'000.0F, ImGui::GetIO().DisplaySize.y - 2.0F * margin});
+      if (ImGui::Begin(panel->title().c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
+        panel->build(builder_);
+      }
+      top += ImGui::GetWindowHeight() + margin;
+      ImGui::End();
+    }
+  }
+
+  static constexpr int framesToPlace = 3;
+
+  ImGuiContext* context_;
+  bool listening_ = false;
+  bool drawing_ = false;
+  bool visible_ = true;
+  ImGuiPanelBuilder builder_;
+  std::vector<std::unique_ptr<Panel>> panels_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<UserInterface>> UserInterface::create(GLFWwindow* window) {
+  auto interface = std::make_unique<ImGuiInterface>();
+  if (!interface->start(window)) {
+    return failure("the panels cannot be drawn with this window", {}, "run without panels: --headless");
+  }
+  return interface;
+}
+
+}  // namespace meridian::ui

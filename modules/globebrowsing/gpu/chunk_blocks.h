@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+namespace meridian::globebrowsing {
+
+/// What shaders/surface/blocks.glsl declares, field by field, in std140.
+
+/// One view of one globe; binding 0.
+struct ViewBlock {
+  glm::mat4 clipFromRelative{1.0F};  ///< from model axes with their origin at the eye
+  glm::vec3 lightDirection{1.0F, 0.0F, 0.0F};
+  float ambient = 0.0F;
+  float opacity = 1.0F;
+  std::array<float, 3> padding{};
+};
+static_assert(sizeof(ViewBlock) == 96);
+
+/// One chunk in one view; binding 1.
+struct ChunkBlock {
+  std::array<glm::vec4, 4> corners{};     ///< north-west, north-east, south-west, south-east, relative to the eye
+  std::array<glm::vec4, 3> composites{};  ///< base, night, overlay: texture coordinate = xy + zw * unit square
+  glm::vec4 layers{-1.0F};  ///< array layers of base, night and overlay composite and of the normals; below 0: none
+  float skirt = 0.0F;
+  float level = 0.0F;
+  std::array<float, 2> padding{};
+};
+static_assert(sizeof(ChunkBlock) == 144);
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,330 @@
+#include "globebrowsing/gpu/composer.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <glm/vec4.hpp>
+
+#include "globebrowsing/layers/layer_fields.h"
+#include "globebrowsing/layers/layer_glsl.h"
+#include "globebrowsing/source/tile_layout.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+constexpr GLuint layerBinding = 2;
+constexpr GLuint placementBinding = 3;
+constexpr int side = colourLayout.size();
+constexpr GLenum colourFormat = GL_RGBA8;
+/// As many layers as the looping program takes; more wait for the program of their own.
+constexpr std::size_t loopLayers = 64;
+
+/// shaders/gpu/compose.frag's Placement and the head of its block.
+struct Placement {
+  glm::vec4 transform{0.0F};
+  float slot = -1.0F;
+  std::array<float, 3> padding{};
+};
+static_assert(sizeof(Placement) == 32);
+
+struct PlacementHead {
+  glm::vec4 background{0.0F};
+  int count = 0;
+  std::array<int, 3> padding{};
+};
+static_assert(sizeof(PlacementHead) == 32);
+
+/// OpenSpace starts the base from the same grey; night and overlays start from nothing.
+glm::vec4 background(CompositeKind kind) {
+  return kind == CompositeKind::Base ? glm::vec4(0.3F, 0.3F, 0.3F, 1.0F) : glm::vec4(0.0F);
+}
+
+/// Pixel of the composite -> texture coordinate of the raw tile, borders of both included.
+glm::vec4 pixelTransform(const UnitSquareTransform& transform) {
+  const double interior = colourLayout.interior;
+  const double border = colourLayout.border;
+  const glm::dvec2 offset = (border + interior * transform.offset - border * transform.scale) / double{side};
+  const glm::dvec2 scale = transform.scale / double{side};
+  return glm::vec4(glm::vec2(offset), glm::vec2(scale));
+}
+
+std::string call(std::size_t layer, std::string_view sampling, std::string_view blend, std::string_view adjustment) {
+  return fmt::format("    result = composePart(result, {}, {}, {}, {});\n", layer, sampling, blend, adjustment);
+}
+
+std::string unrolled(const StructureKey& key) {
+  std::string body;
+  for (std::size_t i = 0; i < key.layers().size(); ++i) {
+    const LayerStructure& layer = key.layers()[i];
+    body += call(i, fmt::format("sampling{}", name(layer.sampling)), fmt::format("blendMode{}", name(layer.blendMode)),
+                 fmt::format("adjustment{}", name(layer.adjustment)));
+  }
+  return body;
+}
+
+constexpr std::string_view loopBody =
+    "    for (int i = 0; i < part.count; ++i) {\n"
+    "        result = composePart(result, i, layers[i].sampling, layers[i].blendMode, layers[i].adjustment);\n"
+    "    }\n";
+
+/// Draws once as compose() does, into textures of its own that are not powers of two either.
+void warmComposition(GLuint program, std::size_t layers) {
+  constexpr int size = 24;
+  const graphics::Texture raw = graphics::Texture::array2D(colourFormat, size, size, 2);
+  const graphics::Texture target = graphics::Texture::array2D(colourFormat, size, size, 2, 2);
+  const graphics::Sampler sampler = graphics::Sampler::create(GL_LINEAR, GL_LINEAR);
+  const graphics::Framebuffer framebuffer = graphics::Framebuffer::create();
+  framebuffer.attachLayer(GL_COLOR_ATTACHMENT0, target, 0);
+  const std::vector<std::byte> zeros(sizeof(PlacementHead) + layers * (sizeof(Placement) + layerFields().stride()));
+  const graphics::Buffer blocks(static_cast<GLsizeiptr>(zeros.size()), zeros.data(), 0);
+  const graphics::VertexArray vertexArray = graphics::VertexArray::create();
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+  glViewport(0, 0, size, size);
+  glDisable(GL_DEPTH_TEST);
+  glBindTextureUnit(0, raw.id());
+  glBindSampler(0, sampler.id());
+  glBindBufferBase(GL_UNIFORM_BUFFER, layerBinding, blocks.id());
+  glBindBufferBase(GL_UNIFORM_BUFFER, placementBinding, blocks.id());
+  glUseProgram(program);
+  glBindVertexArray(vertexArray.id());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void warmHalfSize(GLuint program) {
+  constexpr int size = 24;
+  const graphics::Texture target = graphics::Texture::array2D(colourFormat, size, size, 2, 2);
+  const graphics::Texture view = graphics::Texture::view(target, GL_TEXTURE_2D_ARRAY, colourFormat, 0, 1);
+  const graphics::Framebuffer framebuffer = graphics::Framebuffer::create();
+  framebuffer.attachLayer(GL_COLOR_ATTACHMENT0, target, 0, 1);
+  const graphics::VertexArray vertexArray = graphics::VertexArray::create();
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+  glViewport(0, 0, size / 2, size / 2);
+  glDisable(GL_DEPTH_TEST);
+  glBindTextureUnit(0, view.id());
+  glUseProgram(program);
+  glBindVertexArray(vertexArray.id());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+/// Puts the frame's framebuffer, viewport and depth test back.
+class TargetRestorer {
+ public:
+  TargetRestorer() {
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer_);
+    glGetIntegerv(GL_VIEWPORT, viewport_.data());
+    glDisable(GL_DEPTH_TEST);
+  }
+  TargetRestorer(const TargetRestorer&) = delete;
+  TargetRestorer& operator=(const TargetRestorer&) = delete;
+  ~TargetRestorer() {
+    glEnable(GL_DEPTH_TEST);
+    glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(framebuffer_));
+    glViewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
+    glBindSampler(0, 0);
+    glBindVertexArray(0);
+    glUseProgram(0);
+  }
+
+ private:
+  GLint framebuffer_ = 0;
+  std::array<GLint, 4> viewport_{};
+};
+
+}  // namespace
+
+std::size_t Composer::bytesPerRawTile() {
+  return std::size_t{4} * side * side;
+}
+
+std::size_t Composer::bytesPerComposite() {
+  std::size_t bytes = 0;
+  for (int level = 0; level < levelCount; ++level) {
+    bytes += bytesPerRawTile() >> (2 * level);
+  }
+  return bytes;
+}
+
+double Composer::estimatedMilliseconds(std::size_t layers) const {
+  const double texelsPerMillisecond = graphics_.limits().software ? 4e5 : 1e7;
+  return static_cast<double>(layers + 1) * side * side / texelsPerMillisecond;
+}
+
+Result<std::unique_ptr<Composer>> Composer::create(graphics::Graphics& graphics, const Capacity& capacity) {
+  std::unique_ptr<Composer> composer(new Composer(graphics, capacity));
+  return composer->requestPrograms().map([&] { return std::move(composer); });
+}
+
+Composer::Composer(graphics::Graphics& graphics, const Capacity& capacity)
+    : graphics_(graphics),
+      composites_(
+          graphics::Texture::array2D(colourFormat, side, side, static_cast<int>(capacity.composites), levelCount)),
+      rawTiles_(graphics::Texture::array2D(colourFormat, side, side, static_cast<int>(capacity.rawTiles))),
+      sampler_(graphics::Sampler::create(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR)),
+      rawSampler_(graphics::Sampler::create(GL_LINEAR, GL_LINEAR)),
+      rawSlots_(capacity.rawTiles),
+      framebuffer_(graphics::Framebuffer::create()),
+      emptyVertexArray_(graphics::VertexArray::create()),
+      uniforms_(std::size_t{64} << 10, static_cast<std::size_t>(graphics.limits().uniformBlockAlignment)) {
+  for (int level = 0; level < levelCount; ++level) {
+    levelViews_[static_cast<std::size_t>(level)] =
+        graphics::Texture::view(composites_, GL_TEXTURE_2D_ARRAY, colourFormat, level, 1);
+  }
+}
+
+Result<void> Composer::requestPrograms() {
+  Result<graphics::ProgramDescription> loop = describe("compose/loop", loopLayers, std::string(loopBody));
+  Result<graphics::ShaderSource> vertex = graphics_.templates().load("gpu/fill.vert");
+  Result<graphics::ShaderSource> fragment = graphics_.templates().load("gpu/half_size.frag");
+  for (const Error* error :
+       {loop ? nullptr : &loop.error(), vertex ? nullptr : &vertex.error(), fragment ? nullptr : &fragment.error()}) {
+    if (error != nullptr) {
+      return tl::make_unexpected(*error);
+    }
+  }
+  halfSize_ = graphics_.programs().request({"compose/half size", *vertex, *fragment, warmHalfSize});
+  loop_ = graphics_.programs().request(*std::move(loop));
+  return {};
+}
+
+Result<graphics::ProgramDescription> Composer::describe(std::string key, std::size_t layers, std::string body) const {
+  const int count = std::max(1, static_cast<int>(layers));
+  const graphics::Substitutions substitutions{
+      {"structs", glslStruct(layerFields(), "Layer")},
+      {"constants", glslLayerConstants()},
+      {"layers", glslLayerBlock({"Layer", "LayerBlock", "layers", layerBinding, count})},
+      {"count", fmt::format("{}", count)},
+      {"body", std::move(body)}};
+  Result<graphics::ShaderSource> vertex = graphics_.templates().load("gpu/fill.vert");
+  if (!vertex) {
+    return tl::make_unexpected(vertex.error());
+  }
+  return graphics_.templates().load("gpu/compose.frag", substitutions).map([&](graphics::ShaderSource fragment) {
+    const auto warm = [count](GLuint program) { warmComposition(program, static_cast<std::size_t>(count)); };
+    return graphics::ProgramDescription{std::move(key), std::move(*vertex), std::move(fragment), warm};
+  });
+}
+
+void Composer::setStructure(CompositeKind kind, const StructureKey& key) {
+  Kind& own = kinds_[static_cast<std::size_t>(kind)];
+  if (own.requested && own.key == key) {
+    return;
+  }
+  own.key = key;
+  own.requested = true;
+  // The templates were read once without error, and a structure adds nothing that can be missing.
+  if (Result<graphics::ProgramDescription> description =
+          describe("compose/" + key.text(), key.layers().size(), unrolled(key))) {
+    own.program = graphics_.programs().request(*std::move(description));
+  }
+}
+
+GLuint Composer::program(CompositeKind kind) const {
+  const Kind& own = kinds_[static_cast<std::size_t>(kind)];
+  if (graphics_.programs().ready(halfSize_) == 0) {
+    return 0;
+  }
+  if (const GLuint exact = graphics_.programs().ready(own.program)) {
+    return exact;
+  }
+  return own.key.layers().size() <= loopLayers ? graphics_.programs().ready(loop_) : 0;
+}
+
+bool Composer::ownProgramReady(CompositeKind kind) const {
+  const Kind& own = kinds_[static_cast<std::size_t>(kind)];
+  return graphics_.programs().ready(halfSize_) != 0 && graphics_.programs().ready(own.program) != 0;
+}
+
+std::string Composer::programError() const {
+  for (const Kind& kind : kinds_) {
+    if (kind.requested) {
+      if (const Result<GLuint> built = graphics_.programs().get(kind.program); !built) {
+        return built.error().message();
+      }
+    }
+  }
+  return {};
+}
+
+void Composer::beginFrame(std::uint64_t frame) {
+  frame_ = frame;
+  uniforms_.beginFrame();
+}
+
+void Composer::endFrame() {
+  uniforms_.endFrame();
+}
+
+std::optional<float> Composer::slotOf(const CompositionPart& part) {
+  if (part.tile == nullptr || !part.tile->pixels().anyOpaque) {
+    return -1.0F;
+  }
+  std::optional<std::uint32_t> slot = rawSlots_.use(part.key, frame_);
+  if (!slot) {
+    slot = rawSlots_.take(part.key, frame_, [](const TileKey&) {});
+    if (!slot) {
+      return std::nullopt;
+    }
+    glTextureSubImage3D(rawTiles_.id(), 0, 0, 0, static_cast<GLint>(*slot), side, side, 1, GL_RGBA, GL_UNSIGNED_BYTE,
+                        part.tile->pixels().rgba.data());
+  }
+  return static_cast<float>(*slot);
+}
+
+void Composer::bindBlocks(CompositeKind kind, std::span<const CompositionPart> parts) {
+  const bool exact = ownProgramReady(kind);
+  const std::size_t count = exact ? std::max<std::size_t>(parts.size(), 1) : loopLayers;
+  const std::size_t stride = layerFields().stride();
+  const std::size_t placementBytes = sizeof(PlacementHead) + count * sizeof(Placement);
+  uniforms_.reserve(uniforms_.aligned(count * stride) + uniforms_.aligned(placementBytes));
+  const UniformRing::Block settings = uniforms_.take(count * stride);
+  const UniformRing::Block placements = uniforms_.take(placementBytes);
+  const PlacementHead head{background(kind), static_cast<int>(parts.size()), {}};
+  std::memcpy(placements.bytes, &head, sizeof(head));
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    layerFields().write(*parts[i].layer, {settings.bytes + i * stride, stride});
+    const Placement placement{pixelTransform(parts[i].transform), slotsOfParts_[i], {}};
+    std::memcpy(placements.bytes + sizeof(head) + i * sizeof(placement), &placement, sizeof(placement));
+  }
+  uniforms_.bind(layerBinding, settings);
+  uniforms_.bind(placementBinding, placements);
+}
+
+bool Composer::compose(std::uint32_t slot, CompositeKind kind, std::span<const CompositionPart> parts) {
+  slotsOfParts_.clear();
+  for (const CompositionPart& part : parts) {
+    const std::optional<float> raw = slotOf(part);
+    if (!raw) {
+      return false;
+    }
+    slotsOfParts_.push_back(*raw);
+  }
+  const TargetRestorer restorer;
+  bindBlocks(kind, parts);
+  framebuffer_.attachLayer(GL_COLOR_ATTACHMENT0, composites_, static_cast<int>(slot));
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+  glViewport(0, 0, side, side);
+  glUseProgram(program(kind));
+  glBindTextureUnit(0, rawTiles_.id());
+  glBindSampler(0, rawSampler_.id());
+  glBindVertexArray(emptyVertexArray_.id());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  drawHalfSizes(slot);
+  return true;
+}
+
+void Composer::drawHalfSizes(std::uint32_t slot) {
+  const GLuint program = graphics_.programs().ready(halfSize_);
+  glUseProgram(program);
+  glBindSampler(0, 0);
+  glProgramUniform1i(program, 0, static_cast<GLint>(slot));
+  for (int level = 1; level < levelCount; ++level) {
+    framebuffer_.attachLayer(GL_COLOR_ATTACHMENT0, composites_, static_cast<int>(slot), level);
+    glViewport(0, 0, side >> level, side >> level);
+    glBindTextureUnit(0, levelViews_[static_cast<std::size_t>(level - 1)].id());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+}
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "globebrowsing/gpu/composite_kind.h"
+#include "globebrowsing/gpu/slot_pool.h"
+#include "globebrowsing/gpu/uniform_ring.h"
+#include "globebrowsing/layers/layer.h"
+#include "globebrowsing/layers/structure_key.h"
+#include "globebrowsing/providers/raw_tile.h"
+#include "globebrowsing/streaming/tile_key.h"
+#include "globebrowsing/tiling/tiling.h"
+#include "host/graphics/graphics.h"
+
+namespace meridian::globebrowsing {
+
+/// One enabled layer's part in a composite.
+struct CompositionPart {
+  const Layer* layer = nullptr;
+  const ColourTile* tile = nullptr;  ///< null: the layer has nothing there, or needs no tile
+  TileKey key;                       ///< of that tile
+  UnitSquareTransform transform;     ///< the composite's unit square in that tile's
+};
+
+/// Draws composites: the layers of one kind, blended once per tile instead of once per fragment (after Kooima; Bladin &
+/// Broberg 2016 compose per fragment). A composite is one layer of an array texture, with three half-size levels.
+///
+/// For each structure key it generates a program, which is built in the background; until that is ready a program that
+/// loops over the layers at run time composes. Settings are uniforms and never recompile. Render thread only.
+class Composer {
+ public:
+  struct Capacity {
+    std::uint32_t composites = 0;
+    std::uint32_t rawTiles = 0;
+  };
+  [[nodiscard]] static std::size_t bytesPerComposite();
+  [[nodiscard]] static std::size_t bytesPerRawTile();
+
+  /// Errors: shader templates missing or wrong.
+  [[nodiscard]] static Result<std::unique_ptr<Composer>> create(graphics::Graphics& graphics, const Capacity& capacity);
+
+  /// The array texture of composites; bind it with sampler().
+  [[nodiscard]] GLuint composites() const { return composites_.id(); }
+  [[nodiscard]] GLuint sampler() const { return sampler_.id(); }
+
+  /// Asks for the program of that kind's structure. Cheap when nothing changed.
+  void setStructure(CompositeKind kind, const StructureKey& key);
+  /// Whether anything can be composed: the structure's own program or the looping one is ready.
+  [[nodiscard]] bool ready(CompositeKind kind) const { return program(kind) != 0; }
+  /// Whether the structure's own program is.
+  [[nodiscard]] bool ownProgramReady(CompositeKind kind) const;
+  /// The compiler's complaint about a program that cannot be built, else empty.
+  [[nodiscard]] std::string programError() const;
+
+  void beginFrame(std::uint64_t frame);
+  void endFrame();
+  /// Composes into that array layer. False when the raw tiles of this frame fill their pool: try in the next frame.
+  bool compose(std::uint32_t slot, CompositeKind kind, std::span<const CompositionPart> parts);
+
+  /// What composing that many layers takes: a fetch per texel and layer, and once more for the half-size levels, at the
+  /// rates of a software renderer (400 million a second, measured) or of a modest graphics card.
+  [[nodiscard]] double estimatedMilliseconds(std::size_t layers) const;
+
+  static constexpr int levelCount = 4;
+
+ private:
+  Composer(graphics::Graphics& graphics, const Capacity& capacity);
+  Result<void> requestPrograms();
+  [[nodiscard]] Result<graphics::ProgramDescription> describe(std::string key, std::size_t layers,
+                                                              std::string body) const;
+  [[nodiscard]] GLuint program(CompositeKind kind) const;
+  /// The raw tile's slot, below 0 without a tile; nothing when the pool is full.
+  std::optional<float> slotOf(const CompositionPart& part);
+  void bindBlocks(CompositeKind kind, std::span<const CompositionPart> parts);
+  void drawHalfSizes(std::uint32_t slot);
+
+  struct Kind {
+    StructureKey key;
+    graphics::ProgramHandle program;
+    bool requested = false;
+  };
+
+  graphics::Graphics& graphics_;
+  graphics::Texture composites_;
+  std::array<graphics::Texture, levelCount> levelViews_;  ///< of composites_, each of one level alone
+  graphics::Texture rawTiles_;
+  graphics::Sampler sampler_;
+  graphics::Sampler rawSampler_;
+  SlotPool<TileKey> rawSlots_;
+  graphics::Framebuffer framebuffer_;
+  graphics::VertexArray emptyVertexArray_;
+  UniformRing uniforms_;
+  std::array<Kind, compositeKindCount> kinds_;
+  graphics::ProgramHandle loop_;
+  graphics::ProgramHandle halfSize_;
+  std::vector<float> slotsOfParts_;
+  std::uint64_t frame_ = 0;
+};
+
+}  // namespace meridian::globebrowsing

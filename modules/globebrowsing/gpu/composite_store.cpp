@@ -1,0 +1,276 @@
+#include "globebrowsing/gpu/composite_store.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "globebrowsing/source/tile_layout.h"
+#include "host/api/log.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+/// Facts of tiles long gone are dropped when there are that many.
+constexpr std::size_t mostFacts = 1 << 15;
+
+class ColourJob final : public TileJob {
+ public:
+  ColourJob(std::shared_ptr<TileProvider> provider, std::shared_ptr<const Tiling> tiling, const TileIndex& index)
+      : provider_(std::move(provider)), tiling_(std::move(tiling)), index_(index) {}
+
+  Result<TileDataPointer> run(const std::stop_token& stop) override {
+    return provider_->colours(*tiling_, index_, stop).map([](ColourPixels pixels) -> TileDataPointer {
+      return std::make_shared<const ColourTile>(std::move(pixels));
+    });
+  }
+
+ private:
+  std::shared_ptr<TileProvider> provider_;
+  std::shared_ptr<const Tiling> tiling_;
+  TileIndex index_;
+};
+
+/// The tile's unit square in the composite's texture, whose interior lies within a border.
+glm::vec4 textureTransform(const UnitSquareTransform& transform) {
+  const glm::dvec2 offset =
+      (double{colourLayout.border} + double{colourLayout.interior} * transform.offset) / double{colourLayout.size()};
+  const glm::dvec2 scale = double{colourLayout.interior} * transform.scale / double{colourLayout.size()};
+  return glm::vec4(glm::vec2(offset), glm::vec2(scale));
+}
+
+bool isTile(const Layer& layer) {
+  return layer.sampling() == Sampling::Tile;
+}
+
+}  // namespace
+
+CompositeStore::CompositeStore(std::shared_ptr<const Tiling> tiling, LayerManager& layers, TileStreamer& streamer,
+                               std::unique_ptr<Composer> composer, std::uint32_t capacity)
+    : tiling_(std::move(tiling)),
+      layers_(layers),
+      streamer_(streamer),
+      composer_(std::move(composer)),
+      slots_(capacity),
+      slotVersions_(capacity) {
+  facts_.reserve(mostFacts);
+}
+
+void CompositeStore::beginFrame(std::uint64_t frame) {
+  frame_ = frame;
+  full_ = false;
+  missing_ = 0;
+  requests_.clear();
+  parts_.clear();
+  held_.clear();
+  composer_->beginFrame(frame);
+  bool changed = facts_.size() > mostFacts;
+  for (const CompositeKind kind : allCompositeKinds) {
+    const LayerGroup& group = layers_.group(layerGroup(kind));
+    std::uint64_t& version = versions_[static_cast<std::size_t>(kind)];
+    changed = changed || version != group.settingsVersion();
+    version = group.settingsVersion();
+    if (inUse(kind)) {
+      composer_->setStructure(kind, group.structureKey());
+    }
+  }
+  if (changed) {
+    facts_.clear();
+  }
+}
+
+void CompositeStore::endFrame() {
+  composer_->endFrame();
+}
+
+bool CompositeStore::inUse(CompositeKind kind) const {
+  return kind == CompositeKind::Base || !layers_.group(layerGroup(kind)).enabledLayers().empty();
+}
+
+bool CompositeStore::anyFiner(CompositeKind kind, const TileIndex& index) const {
+  const std::vector<Layer*>& enabled = layers_.group(layerGroup(kind)).enabledLayers();
+  return std::any_of(enabled.begin(), enabled.end(), [&](const Layer* layer) {
+    return isTile(*layer) && layer->isReady() && layer->provider()->hasFinerColours(*tiling_, index);
+  });
+}
+
+const CompositeStore::Facts& CompositeStore::facts(const TileIndex& index) const {
+  if (const auto found = facts_.find(index); found != facts_.end()) {
+    return found->second;
+  }
+  Facts made;
+  const std::optional<TileIndex> parent = tiling_->parent(index);
+  for (const CompositeKind kind : allCompositeKinds) {
+    const auto i = static_cast<std::size_t>(kind);
+    // The tile's own composite is worth having only where it shows more than its parent's.
+    const bool own = !parent || anyFiner(kind, *parent);
+    made.ownerLevel[i] = own ? index.level : facts(*parent).ownerLevel[i];
+    made.finer = made.finer || (inUse(kind) && anyFiner(kind, index));
+  }
+  return facts_.emplace(index, made).first->second;
+}
+
+bool CompositeStore::hasFiner(const TileIndex& index) const {
+  return facts(index).finer;
+}
+
+TileIndex CompositeStore::owner(CompositeKind kind, const TileIndex& index) const {
+  const int level = facts(index).ownerLevel[static_cast<std::size_t>(kind)];
+  TileIndex found = index;
+  while (found.level > level) {
+    found = *tiling_->parent(found);
+  }
+  return found;
+}
+
+CompositeStore::State CompositeStore::stateOf(const CompositeKey& key) const {
+  const std::optional<std::uint32_t> slot = slots_.peek(key);
+  return {slot.has_value(), slot && slotVersions_[*slot] == versions_[static_cast<std::size_t>(key.kind)]};
+}
+
+CompositeStore::State CompositeStore::state(const TileIndex& index) const {
+  State all;
+  for (const CompositeKind kind : allCompositeKinds) {
+    if (inUse(kind)) {
+      const State one = stateOf({kind, owner(kind, index)});
+      all = {all.present && one.present, all.current && one.current};
+    }
+  }
+  return all;
+}
+
+CompositeStore::State CompositeStore::want(const TileIndex& index, double priority) {
+  State all;
+  for (const CompositeKind kind : allCompositeKinds) {
+    if (inUse(kind)) {
+      const State one = wantComposite({kind, owner(kind, index)}, priority);
+      all = {all.present && one.present, all.current && one.current};
+    }
+  }
+  return all;
+}
+
+CompositeStore::State CompositeStore::wantComposite(const CompositeKey& key, double priority) {
+  slots_.use(key, frame_);
+  const State state = stateOf(key);
+  if (state.current) {
+    return state;
+  }
+  ++missing_;
+  // Many chunks may draw the same ancestor's composite.
+  const bool known = std::any_of(requests_.begin(), requests_.end(), [&](const Request& r) { return r.key == key; });
+  if (!known && composer_->ready(key.kind)) {
+    Request request{key, priority, parts_.size(), 0};
+    if (gather(key, priority)) {
+      request.partCount = parts_.size() - request.firstPart;
+      requests_.push_back(request);
+    } else {
+      parts_.resize(request.firstPart);
+    }
+  }
+  return state;
+}
+
+bool CompositeStore::gather(const CompositeKey& key, double priority) {
+  bool all = true;
+  for (const Layer* layer : layers_.group(layerGroup(key.kind)).enabledLayers()) {
+    CompositionPart part{layer, nullptr, {}, {}};
+    TileIndex index = key.index;
+    while (isTile(*layer) && index.level > 0 &&
+           !layer->provider()->hasFinerColours(*tiling_, *tiling_->parent(index))) {
+      part.transform = part.transform.then(tiling_->inParent(index));
+      index = *tiling_->parent(index);
+    }
+    if (isTile(*layer) && layer->isReady() && layer->provider()->overlaps(*tiling_, index)) {
+      part.key = {layer->stream(), index};
+      const TileAnswer answer = streamer_.request(
+          part.key, priority, [&] { return std::make_unique<ColourJob>(layer->provider(), tiling_, index); });
+      all = all && answer.state != TileAnswer::State::Pending;
+      if (answer.state == TileAnswer::State::Ready) {
+        held_.push_back(*answer.data);
+        part.tile = &static_cast<const ColourTile&>(*held_.back());
+      }
+    }
+    parts_.push_back(part);
+  }
+  return all;
+}
+
+void CompositeStore::keep(const TileIndex& index) {
+  for (const CompositeKind kind : allCompositeKinds) {
+    if (inUse(kind)) {
+      slots_.use({kind, owner(kind, index)}, frame_);
+    }
+  }
+}
+
+void CompositeStore::compose(double milliseconds) {
+  std::sort(requests_.begin(), requests_.end(),
+            [](const Request& a, const Request& b) { return a.priority > b.priority; });
+  double spent = 0.0;
+  for (const Request& request : requests_) {
+    if (spent >= milliseconds || !composeOne(request)) {
+      break;
+    }
+    --missing_;
+    spent += composer_->estimatedMilliseconds(request.partCount);
+  }
+}
+
+bool CompositeStore::composeOne(const Request& request) {
+  std::optional<std::uint32_t> slot = slots_.use(request.key, frame_);
+  if (!slot) {
+    slot = slots_.take(request.key, frame_, [](const CompositeKey&) {});
+  }
+  if (!slot) {
+    if (!toldFull_) {
+      log::warning("the texture pool has no room for all composites of this view; raise TexturePoolSize");
+      toldFull_ = true;
+    }
+    full_ = true;
+    return false;
+  }
+  const std::span<const CompositionPart> parts(parts_.data() + request.firstPart, request.partCount);
+  if (!composer_->compose(*slot, request.key.kind, parts)) {
+    slots_.release([&](const CompositeKey& key) { return key == request.key; });
+    return false;
+  }
+  slotVersions_[*slot] = versions_[static_cast<std::size_t>(request.key.kind)];
+  return true;
+}
+
+std::optional<CompositeStore::Placement> CompositeStore::place(CompositeKind kind, const TileIndex& index) {
+  UnitSquareTransform transform;
+  TileIndex at = index;
+  const int ownerLevel = facts(index).ownerLevel[static_cast<std::size_t>(kind)];
+  while (true) {
+    if (at.level <= ownerLevel) {
+      if (const std::optional<std::uint32_t> slot = slots_.use({kind, at}, frame_)) {
+        return Placement{*slot, textureTransform(transform)};
+      }
+    }
+    const std::optional<TileIndex> parent = tiling_->parent(at);
+    if (!parent) {
+      return std::nullopt;
+    }
+    transform = transform.then(tiling_->inParent(at));
+    at = *parent;
+  }
+}
+
+std::string CompositeStore::waitingFor() const {
+  for (const CompositeKind kind : allCompositeKinds) {
+    for (const Layer* layer : layers_.group(layerGroup(kind)).enabledLayers()) {
+      const TileProvider::State state = layer->provider()->state();
+      if (isTile(*layer) && (state == TileProvider::State::NotOpened || state == TileProvider::State::Opening)) {
+        return fmt::format("{} is being opened", layer->uri());
+      }
+    }
+    if (inUse(kind) && !composer_->ownProgramReady(kind)) {
+      return "a composition program is being built";
+    }
+  }
+  return missing_ > 0 ? fmt::format("{} composites are waiting", missing_) : std::string();
+}
+
+}  // namespace meridian::globebrowsing

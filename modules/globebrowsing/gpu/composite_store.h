@@ -1,0 +1,122 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include <glm/vec4.hpp>
+
+#include "globebrowsing/gpu/composer.h"
+#include "globebrowsing/gpu/composite_kind.h"
+#include "globebrowsing/gpu/slot_pool.h"
+#include "globebrowsing/layers/layer_manager.h"
+#include "globebrowsing/streaming/tile_streamer.h"
+
+namespace meridian::globebrowsing {
+
+/// Names a composite.
+struct CompositeKey {
+  CompositeKind kind = CompositeKind::Base;
+  TileIndex index;
+  bool operator==(const CompositeKey&) const = default;
+};
+
+}  // namespace meridian::globebrowsing
+
+template <>
+struct std::hash<meridian::globebrowsing::CompositeKey> {
+  std::size_t operator()(const meridian::globebrowsing::CompositeKey& key) const noexcept {
+    return std::hash<meridian::globebrowsing::TileIndex>()(key.index) * 3 + static_cast<std::size_t>(key.kind);
+  }
+};
+
+namespace meridian::globebrowsing {
+
+/// The colours of tiles: decides which tile's composite a chunk draws (its own, or beyond the finest data that of an
+/// ancestor), asks for the raw tiles that it needs, and has it composed. When layers or settings change the composites
+/// of before are drawn until they have been composed anew, nearest first, under the frame's budget.
+/// Render thread only; a steady frame allocates nothing.
+class CompositeStore {
+ public:
+  /// Both must outlive the store.
+  CompositeStore(std::shared_ptr<const Tiling> tiling, LayerManager& layers, TileStreamer& streamer,
+                 std::unique_ptr<Composer> composer, std::uint32_t capacity);
+
+  void beginFrame(std::uint64_t frame);
+  void endFrame();
+
+  /// What a tile's colours lack.
+  struct State {
+    bool present = true;  ///< every kind in use has the tile's own composite, if only of an earlier setting
+    bool current = true;  ///< and they are of the present structure and settings
+  };
+  /// Asks for what the tile's colours lack.
+  State want(const TileIndex& index, double priority);
+  /// The same without asking.
+  [[nodiscard]] State state(const TileIndex& index) const;
+  void keep(const TileIndex& index);
+  /// Composes what has all its raw tiles, greatest priority first, for about that long; at least one each frame.
+  /// Drivers draw later than they are told, so the time is reckoned from the texels, not measured.
+  void compose(double milliseconds);
+
+  /// Whether some enabled layer has finer data within the tile than the tile's own composites show.
+  [[nodiscard]] bool hasFiner(const TileIndex& index) const;
+
+  /// What a chunk draws of a kind: its own composite or the nearest ancestor's; nothing where there is none.
+  struct Placement {
+    std::uint32_t slot = 0;
+    glm::vec4 transform{0.0F};  ///< texture coordinate = xy + zw * unit square of the chunk
+  };
+  [[nodiscard]] std::optional<Placement> place(CompositeKind kind, const TileIndex& index);
+
+  /// Whether any enabled layer is of that kind; Base always is in use.
+  [[nodiscard]] bool inUse(CompositeKind kind) const;
+  [[nodiscard]] const Composer& composer() const { return *composer_; }
+  /// Why what is asked for is not complete, or an empty string.
+  [[nodiscard]] std::string waitingFor() const;
+  /// Whether this frame asked for more composites than the pool can hold: what is missing then stays missing.
+  [[nodiscard]] bool full() const { return full_; }
+
+ private:
+  /// What is known of a tile's colours as long as no layer changes.
+  struct Facts {
+    std::array<std::uint8_t, compositeKindCount> ownerLevel{};  ///< of the tile whose composite is drawn
+    bool finer = false;
+  };
+  struct Request {
+    CompositeKey key;
+    double priority = 0.0;
+    std::size_t firstPart = 0;
+    std::size_t partCount = 0;
+  };
+
+  [[nodiscard]] const Facts& facts(const TileIndex& index) const;
+  [[nodiscard]] bool anyFiner(CompositeKind kind, const TileIndex& index) const;
+  [[nodiscard]] TileIndex owner(CompositeKind kind, const TileIndex& index) const;
+  State wantComposite(const CompositeKey& key, double priority);
+  [[nodiscard]] State stateOf(const CompositeKey& key) const;
+  bool gather(const CompositeKey& key, double priority);
+  bool composeOne(const Request& request);
+
+  std::shared_ptr<const Tiling> tiling_;
+  LayerManager& layers_;
+  TileStreamer& streamer_;
+  std::unique_ptr<Composer> composer_;
+  SlotPool<CompositeKey> slots_;
+  std::vector<std::uint64_t> slotVersions_;  ///< of what each slot's composite was made from
+  std::array<std::uint64_t, compositeKindCount> versions_{};
+  mutable std::unordered_map<TileIndex, Facts> facts_;
+  std::vector<Request> requests_;
+  std::vector<CompositionPart> parts_;
+  std::vector<TileDataPointer> held_;  ///< the raw tiles of parts_
+  std::uint64_t frame_ = 0;
+  bool full_ = false;
+  bool toldFull_ = false;
+  std::size_t missing_ = 0;
+};
+
+}  // namespace meridian::globebrowsing

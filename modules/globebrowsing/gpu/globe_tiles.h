@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "globebrowsing/gpu/composite_store.h"
+#include "globebrowsing/gpu/surface_store.h"
+#include "globebrowsing/streaming/tile_residency.h"
+
+namespace meridian::globebrowsing {
+
+/// What of a globe is in memory: tells the chunk tree, and gives the renderer what to draw. Render thread only.
+class GlobeTiles final : public TileResidency {
+ public:
+  struct Options {
+    std::size_t texturePoolBytes = std::size_t{512} << 20;
+  };
+  /// Tiling, layers and streamer must outlive it. Errors: shader templates missing or wrong.
+  [[nodiscard]] static Result<std::unique_ptr<GlobeTiles>> create(graphics::Graphics& graphics,
+                                                                  std::shared_ptr<const Tiling> tiling,
+                                                                  LayerManager& layers, TileStreamer& streamer,
+                                                                  const Options& options);
+
+  void beginFrame(std::uint64_t frame);
+  /// Uploads and composes under the frame's budgets. After selection.
+  void process(graphics::UploadBudget& uploads, double compositionMilliseconds);
+
+  void want(const TileIndex& index, double priority) override;
+  void keep(const TileIndex& index) override;
+  [[nodiscard]] State state(const TileIndex& index) const override;
+  [[nodiscard]] HeightRange heightRange(const TileIndex& index) const override;
+  [[nodiscard]] unsigned heightVersion(const TileIndex& index) const override;
+  [[nodiscard]] double geometricError(const TileIndex& index, int step) const override;
+  [[nodiscard]] bool hasFinerColours(const TileIndex& index) const override { return composites_.hasFiner(index); }
+
+  [[nodiscard]] const SurfaceStore& surfaces() const { return surfaces_; }
+  [[nodiscard]] CompositeStore& composites() { return composites_; }
+  [[nodiscard]] const CompositeStore& composites() const { return composites_; }
+  /// What the tiles that were wanted in this frame still lack, or an empty string.
+  [[nodiscard]] std::string waitingFor() const;
+
+ private:
+  GlobeTiles(std::shared_ptr<const Tiling> tiling, LayerManager& layers, TileStreamer& streamer,
+             std::unique_ptr<Composer> composer, std::uint32_t surfaces, std::uint32_t composites);
+
+  std::shared_ptr<const Tiling> tiling_;
+  SurfaceStore surfaces_;
+  CompositeStore composites_;
+  std::size_t stale_ = 0;  ///< tiles wanted in this frame that are not current
+};
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,69 @@
+#include "globebrowsing/gpu/surface_pool.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+constexpr GLsizeiptr slotBytes = static_cast<GLsizeiptr>(sizeof(SurfaceVertex)) * chunk_grid::vertexCount;
+
+}  // namespace
+
+SurfacePool::SurfacePool(std::uint32_t capacity)
+    : slots_(capacity),
+      vertices_(slotBytes * static_cast<GLsizeiptr>(capacity), nullptr, GL_DYNAMIC_STORAGE_BIT),
+      vertexArray_(graphics::VertexArray::create()),
+      normals_(graphics::Texture::array2D(normalFormat, ChunkSurface::nodes, ChunkSurface::nodes,
+                                          static_cast<int>(capacity))) {
+  std::vector<std::uint16_t> all;
+  for (int step = 0; step < chunk_grid::steps; ++step) {
+    const std::vector<std::uint16_t> indices = chunk_grid::indices(step);
+    firstElement_[static_cast<std::size_t>(step)] = all.size() * sizeof(std::uint16_t);
+    elementCount_[static_cast<std::size_t>(step)] = static_cast<int>(indices.size());
+    all.insert(all.end(), indices.begin(), indices.end());
+  }
+  elements_ = graphics::Buffer(static_cast<GLsizeiptr>(all.size() * sizeof(std::uint16_t)), all.data(), 0);
+  describeVertices(vertexArray_.id(), vertices_.id());
+  glVertexArrayElementBuffer(vertexArray_.id(), elements_.id());
+}
+
+void SurfacePool::describeVertices(GLuint vertexArray, GLuint vertexBuffer) {
+  glVertexArrayVertexBuffer(vertexArray, 0, vertexBuffer, 0, sizeof(SurfaceVertex));
+  glVertexArrayAttribFormat(vertexArray, 0, 4, GL_FLOAT, GL_FALSE, offsetof(SurfaceVertex, offset));
+  glVertexArrayAttribFormat(vertexArray, 1, 3, GL_FLOAT, GL_FALSE, offsetof(SurfaceVertex, normal));
+  glVertexArrayAttribFormat(vertexArray, 2, 4, GL_UNSIGNED_BYTE, GL_FALSE, offsetof(SurfaceVertex, place));
+  for (GLuint attribute = 0; attribute < 3; ++attribute) {
+    glVertexArrayAttribBinding(vertexArray, attribute, 0);
+    glEnableVertexArrayAttrib(vertexArray, attribute);
+  }
+}
+
+void SurfacePool::upload(std::uint32_t slot, const ChunkSurface& surface) const {
+  vertices_.write(slotBytes * static_cast<GLsizeiptr>(slot), slotBytes, surface.vertices().data());
+  glTextureSubImage3D(normals_.id(), 0, 0, 0, static_cast<GLint>(slot), ChunkSurface::nodes, ChunkSurface::nodes, 1,
+                      GL_RGBA, GL_SHORT, surface.normalOffsets().data());
+}
+
+void SurfacePool::bind(GLuint normalUnit) const {
+  glBindVertexArray(vertexArray_.id());
+  glBindTextureUnit(normalUnit, normals_.id());
+}
+
+void SurfacePool::draw(std::uint32_t slot, int step) const {
+  drawElements(slot, step, elementCount_[static_cast<std::size_t>(step)]);
+}
+
+void SurfacePool::drawGrid(std::uint32_t slot, int step) const {
+  drawElements(slot, step, chunk_grid::gridIndexCount(step));
+}
+
+void SurfacePool::drawElements(std::uint32_t slot, int step, int count) const {
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL takes the offset as a pointer.
+  const auto* first = reinterpret_cast<const void*>(firstElement_[static_cast<std::size_t>(step)]);
+  glDrawElementsBaseVertex(GL_TRIANGLES, count, GL_UNSIGNED_SHORT, first,
+                           static_cast<GLint>(slot) * chunk_grid::vertexCount);
+}
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "globebrowsing/chunks/chunk_surface.h"
+#include "globebrowsing/gpu/surface_pool.h"
+#include "globebrowsing/layers/layer_manager.h"
+#include "globebrowsing/streaming/tile_streamer.h"
+#include "host/graphics/upload_budget.h"
+
+namespace meridian::globebrowsing {
+
+/// The shapes of tiles: asks for the raw heights of every enabled height layer, has them composed into ChunkSurfaces on
+/// workers, and uploads those. When heights change (a layer toggled, a setting) the surfaces of before stay until the
+/// new ones are there. Render thread only; a steady frame allocates nothing.
+class SurfaceStore {
+ public:
+  /// All must outlive the store.
+  SurfaceStore(std::shared_ptr<const Tiling> tiling, LayerManager& layers, TileStreamer& streamer,
+               std::uint32_t capacity);
+  ~SurfaceStore();
+
+  void beginFrame(std::uint64_t frame);
+  /// Asks for what the tile's surface lacks. Returns whether nothing is lacking: it is resident and current.
+  bool want(const TileIndex& index, double priority);
+  /// Keeps the tile's surface from being evicted in this frame.
+  void keep(const TileIndex& index);
+  /// Uploads what has arrived, greatest priority first.
+  void upload(graphics::UploadBudget& budget);
+
+  /// The resident surface, current or not; null without one.
+  [[nodiscard]] const ChunkSurface* find(const TileIndex& index) const;
+  /// The slot of find() in pool().
+  [[nodiscard]] std::optional<std::uint32_t> slot(const TileIndex& index) const { return pool_.slots().peek(index); }
+  [[nodiscard]] const SurfacePool& pool() const { return pool_; }
+  /// The surface of the tile or of its nearest ancestor that has one.
+  struct Nearest {
+    const ChunkSurface* surface = nullptr;  ///< null when not even the root has one
+    int level = 0;
+    unsigned stamp = 0;  ///< of its arrival: equal stamps mean the same surface; 0 for none
+  };
+  [[nodiscard]] Nearest nearest(const TileIndex& index) const;
+  /// No resident surface is deeper.
+  [[nodiscard]] int deepestLevel() const { return deepest_; }
+  /// The least height of any resident surface, at most 0.
+  [[nodiscard]] double lowestHeight() const { return lowest_; }
+  /// The greatest, at least 0.
+  [[nodiscard]] double highestHeight() const { return highest_; }
+  /// Height layers whose data are being opened, or an empty string.
+  [[nodiscard]] std::string waitingFor() const;
+
+ private:
+  struct Resident {
+    std::shared_ptr<const ChunkSurface> surface;
+    std::uint32_t stream = 0;
+    unsigned stamp = 0;
+  };
+  struct Arrival {
+    TileIndex index;
+    double priority = 0.0;
+    TileDataPointer data;
+  };
+
+  /// Whether the raw heights of all layers are there (or will never be); asks for those that are missing.
+  bool gather(const TileIndex& index, double priority);
+  void place(const Arrival& arrival);
+
+  std::shared_ptr<const Tiling> tiling_;
+  LayerManager& layers_;
+  TileStreamer& streamer_;
+  SurfacePool pool_;
+  std::unordered_map<TileIndex, Resident> resident_;
+  std::vector<Arrival> arrivals_;
+  std::vector<TileAnswer> gathered_;  ///< by enabled height layer, of the tile being looked at
+  std::uint64_t frame_ = 0;
+  std::uint64_t heightsVersion_ = 0;
+  std::uint32_t stream_ = 0;  ///< of surfaces composed from the present version of the height layers
+  unsigned lastStamp_ = 0;
+  int deepest_ = 0;
+  double lowest_ = 0.0;
+  double highest_ = 0.0;
+};
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,162 @@
+#include "globebrowsing/layers/layer.h"
+
+#include <utility>
+
+#include "globebrowsing/streaming/tile_streamer.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+std::string_view stateName(TileProvider::State state) {
+  switch (state) {
+    case TileProvider::State::NotOpened:
+      return "not opened";
+    case TileProvider::State::Opening:
+      return "opening";
+    case TileProvider::State::Ready:
+      return "ready";
+    case TileProvider::State::Failed:
+      return "failed";
+  }
+  return "failed";
+}
+
+}  // namespace
+
+Layer::Layer(LayerDescription description, LayerGroupId group, const LayerServices& services,
+             std::function<void(const Layer&, Change)> changed)
+    : PropertyOwner(description.identifier, description.name, description.description),
+      type({"Type", "Type", "Where the layer's data come from", true}, layerTypeNames(),
+           static_cast<int>(description.type)),
+      enabled({"Enabled", "Enabled", "Whether the layer is shown"}, description.enabled),
+      opacity({"Opacity", "Opacity", "0 is invisible, 1 opaque"}, description.opacity, opacityRange),
+      fade({"Fade", "Fade", "Multiplies Opacity; what scripts use to fade"}, 1.0, opacityRange),
+      blendMode({"BlendMode", "Blend mode", "How the layer is put onto those below"}, blendModeNames(),
+                static_cast<int>(description.blendMode)),
+      guiDescription({"GuiDescription", "Description", "What the layer shows", true}, description.description),
+      colour({"Color", "Color", "Of a SolidColor layer"}, description.colour, {0.0, 1.0}),
+      gamma({"Gamma", "Gamma", "Exponent of a value's magnitude"}, description.settings.gamma, gammaRange),
+      multiplier({"Multiplier", "Multiplier", "Factor, after the exponent"}, description.settings.multiplier,
+                 multiplierRange),
+      offset({"Offset", "Offset", "Added at last"}, description.settings.offset, offsetRange),
+      adjustmentType({"Type", "Type", "Which adjustment"}, adjustmentNames(), static_cast<int>(description.adjustment)),
+      chromaKeyColour({"ChromaKeyColor", "Chroma key color", "The colour that becomes transparent"},
+                      description.chromaKeyColour, {0.0, 1.0}),
+      chromaKeyTolerance({"ChromaKeyTolerance", "Chroma key tolerance", "How far from it colours still do"},
+                         description.chromaKeyTolerance, {0.0, 1.0}),
+      group_(group),
+      zIndex_(description.zIndex.value_or(1)),
+      hadZIndex_(description.zIndex.has_value()),
+      sampling_(description.provider->hasTiles() ? Sampling::Tile : Sampling::SolidColor),
+      request_(std::move(description.request)),
+      provider_(std::move(description.provider)),
+      services_(services),
+      stream_(services.streamer != nullptr ? services.streamer->newStream() : 0),
+      changed_(std::move(changed)) {
+  addProperties();
+  connectProperties();
+}
+
+Layer::~Layer() {
+  if (services_.streamer != nullptr) {
+    services_.streamer->forget(stream_);
+  }
+}
+
+void Layer::addProperties() {
+  for (Property* property : std::initializer_list<Property*>{&type, &enabled, &opacity, &fade, &blendMode, &reset,
+                                                             &remove, &guiDescription, &status, &lastError}) {
+    addProperty(*property);
+  }
+  if (sampling_ == Sampling::SolidColor) {
+    addProperty(colour);
+  }
+  for (Property* property : std::initializer_list<Property*>{&gamma, &multiplier, &offset, &setDefault}) {
+    settingsOwner.addProperty(*property);
+  }
+  addChild(settingsOwner);
+  for (Property* property : std::initializer_list<Property*>{&adjustmentType, &chromaKeyColour, &chromaKeyTolerance}) {
+    adjustmentOwner.addProperty(*property);
+  }
+  addChild(adjustmentOwner);
+}
+
+void Layer::connectProperties() {
+  const auto tell = [this](Change change) {
+    return [this, change] {
+      if (!quiet_) {
+        changed_(*this, change);
+      }
+    };
+  };
+  for (Property* property : std::initializer_list<Property*>{&enabled, &blendMode, &adjustmentType}) {
+    property->onChange(tell(Change::Structure));
+  }
+  for (Property* property : std::initializer_list<Property*>{&opacity, &fade, &colour, &gamma, &multiplier, &offset,
+                                                             &chromaKeyColour, &chromaKeyTolerance}) {
+    property->onChange(tell(Change::Settings));
+  }
+  setDefault.onChange([this] {
+    const LayerSettings before = settings();
+    quiet_ = true;
+    gamma.put(1.0);
+    multiplier.put(1.0);
+    offset.put(0.0);
+    quiet_ = false;
+    if (settings() != before) {
+      changed_(*this, Change::Settings);
+    }
+  });
+  reset.onChange([this] { restart(); });
+  remove.onChange([this] { wantsRemoval_ = true; });
+}
+
+bool Layer::isReady() const {
+  return isEnabled() && sampling_ == Sampling::Tile && provider_->state() == TileProvider::State::Ready;
+}
+
+void Layer::restart() {
+  Result<std::shared_ptr<TileProvider>> provider = makeProvider(request_);
+  if (!provider) {
+    lastError.put(provider.error().message());
+    return;
+  }
+  provider_ = std::move(*provider);
+  if (services_.streamer != nullptr) {
+    services_.streamer->forget(stream_);
+    stream_ = services_.streamer->newStream();
+  }
+  seenState_ = TileProvider::State::NotOpened;
+  seenError_ = nullptr;
+  status.put(std::string(stateName(seenState_)));
+  lastError.put({});
+  changed_(*this, Change::Settings);
+}
+
+void Layer::update() {
+  if (isEnabled() && services_.workers != nullptr && provider_->state() == TileProvider::State::NotOpened) {
+    TileProvider::openOn(*services_.workers, provider_);
+  }
+  updateStatus();
+}
+
+void Layer::updateStatus() {
+  if (const TileProvider::State state = provider_->state(); state != seenState_) {
+    seenState_ = state;
+    status.put(std::string(stateName(state)));
+    if (const std::optional<Error> error = provider_->error()) {
+      lastError.put(error->message());
+    }
+    if (state == TileProvider::State::Ready || state == TileProvider::State::Failed) {
+      changed_(*this, Change::Settings);
+    }
+  }
+  const Error* tileError = services_.streamer != nullptr ? services_.streamer->lastError(stream_) : nullptr;
+  if (tileError != seenError_) {
+    seenError_ = tileError;
+    lastError.put(tileError != nullptr ? tileError->message() : std::string());
+  }
+}
+
+}  // namespace meridian::globebrowsing

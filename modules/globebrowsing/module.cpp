@@ -1,0 +1,36 @@
+#include "globebrowsing/module.h"
+
+#include "globebrowsing/globe_services.h"
+#include "globebrowsing/layer_panel.h"
+#include "globebrowsing/renderable_globe.h"
+#include "globebrowsing/script_library.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+class GlobeBrowsingModule final : public Module {
+ public:
+  GlobeBrowsingModule() : Module("GlobeBrowsing", "Globe browsing", "Planets and moons from map data") {}
+
+  Result<void> initialize(Host& host) override {
+    services_ = std::make_unique<GlobeServices>(*this, host.statistics());
+    host.registerRenderable("RenderableGlobe", [this](const RenderableRequest& request) {
+      return RenderableGlobe::create(request, *services_);
+    });
+    host.registerScriptLibrary(makeScriptLibrary(host));
+    host.registerPanel(std::make_unique<LayerPanel>(host));
+    return {};
+  }
+
+ private:
+  std::unique_ptr<GlobeServices> services_;
+};
+
+}  // namespace
+
+std::unique_ptr<Module> makeModule() {
+  return std::make_unique<GlobeBrowsingModule>();
+}
+
+}  // namespace meridian::globebrowsing

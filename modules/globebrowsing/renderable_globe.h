@@ -1,0 +1,89 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "globebrowsing/globe_services.h"
+#include "globebrowsing/layers/layer_manager.h"
+#include "globebrowsing/surface/surface.h"
+#include "globebrowsing/tiling/tiling.h"
+#include "host/api/renderable.h"
+#include "host/api/schema.h"
+
+namespace meridian::globebrowsing {
+
+/// A planet or moon: an asset's `Renderable = { Type = "RenderableGlobe", ... }`. Owns its layers and its surface, and
+/// is the ground that cameras and flights stand on.
+class RenderableGlobe final : public Renderable, public Ground {
+ public:
+  /// Errors: a table that fails the schema, radii that are no ellipsoid. A layer that is wrong is left out and its
+  /// error kept in layerErrors(). `services` outlives the globe.
+  [[nodiscard]] static Result<std::unique_ptr<Renderable>> create(const RenderableRequest& request,
+                                                                  GlobeServices& services);
+  ~RenderableGlobe() override;
+
+  /// What an asset's table may hold.
+  [[nodiscard]] static const Schema& schema();
+
+  [[nodiscard]] LayerManager& layers() { return layers_; }
+  [[nodiscard]] const std::vector<Error>& layerErrors() const { return layerErrors_; }
+
+  Result<void> initializeGraphics(graphics::Graphics& graphics) override;
+  void deinitializeGraphics() override;
+  void update(const FrameContext& frame) override;
+  void draw(const FrameContext& frame, std::size_t view) override;
+  [[nodiscard]] double boundingSphere() const override { return tiling_->ellipsoid().maximumRadius(); }
+  [[nodiscard]] Ground* ground() override { return this; }
+
+  [[nodiscard]] glm::dvec3 radii() const override { return tiling_->ellipsoid().radii(); }
+  [[nodiscard]] glm::dvec3 cartesian(const GeodeticPosition& position) const override;
+  [[nodiscard]] GeodeticPosition geodetic(const glm::dvec3& position) const override;
+  [[nodiscard]] glm::dvec3 normal(double latitude, double longitude) const override;
+  [[nodiscard]] double heightAt(double latitude, double longitude) const override;
+  [[nodiscard]] std::optional<glm::dvec3> pick(const glm::dvec3& origin, const glm::dvec3& direction) const override;
+  [[nodiscard]] Settled settled(std::size_t view) const override;
+
+  /// The surface while the globe is near enough to be drawn, else null; for benchmarks and tests.
+  [[nodiscard]] Surface* surface() { return surface_.get(); }
+
+  BoolProperty performShading{{"PerformShading", "Shading", "Whether the light source lights it"}, true};
+  BoolProperty useAccurateNormals{
+      {"UseAccurateNormals", "Accurate normals", "Whether relief is shaded, or only the ellipsoid"}, false};
+  BoolProperty renderAtDistance{
+      {"RenderAtDistance", "Render at distance", "Whether it is drawn when smaller than a pixel"}, false};
+  FloatProperty ambientIntensity{
+      {"AmbientIntensity", "Ambient light", "Share of the light that reaches the night side"}, 0.05, {0.0, 1.0}};
+  FloatProperty targetLodScaleFactor{
+      {"TargetLodScaleFactor", "Level of detail", "15: one texel a pixel; twice that is twice as fine"},
+      15.0,
+      {1.0, 50.0}};
+
+  PropertyOwner debugOwner{"Debug", "Debug", "For looking into how the globe is drawn"};
+  BoolProperty showChunkEdges{{"ShowChunkEdges", "Chunk edges", "Draws the outlines of chunks"}, false};
+  BoolProperty performFrustumCulling{{"PerformFrustumCulling", "Frustum culling"}, true};
+  BoolProperty performHorizonCulling{{"PerformHorizonCulling", "Horizon culling"}, true};
+  OptionProperty evaluator{{"Evaluator", "Evaluator", "What decides how fine a chunk must be"},
+                           {"ScreenSpaceError", "Distance", "ProjectedArea", "AvailableData"}};
+
+ private:
+  RenderableGlobe(std::shared_ptr<const Tiling> tiling, GlobeServices& services);
+  void addProperties();
+  Result<void> load(const RenderableRequest& request);
+  [[nodiscard]] bool isLargeEnough(const FrameContext& frame) const;
+  [[nodiscard]] SurfaceSettings settings() const;
+  void makeSurface();
+
+  std::shared_ptr<const Tiling> tiling_;
+  GlobeServices& services_;
+  LayerManager layers_;
+  std::vector<Error> layerErrors_;
+  graphics::Graphics* graphics_ = nullptr;
+  std::unique_ptr<Surface> surface_;
+  bool surfaceFailed_ = false;
+  bool drawn_ = false;  ///< in this frame
+  int framesUnseen_ = 0;
+};
+
+}  // namespace meridian::globebrowsing

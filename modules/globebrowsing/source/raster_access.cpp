@@ -1,0 +1,372 @@
+#include "globebrowsing/source/raster_access.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include <gdal_priv.h>
+
+#include "globebrowsing/source/gdal_runtime.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+constexpr std::size_t keptBytes = std::size_t{64} << 20U;  // of a level
+constexpr std::size_t stripBytes = std::size_t{4} << 20U;  // read between two looks at the stop token
+constexpr std::size_t pooledDatasets = 8;
+
+tl::unexpected<Error> cancelled(const std::string& where) {
+  return failure("cancelled", where);
+}
+
+SampleType sampleType(GDALRasterBand& band) {
+  switch (band.GetRasterDataType()) {
+    case GDT_UInt16:
+      return SampleType::UInt16;
+    case GDT_Int16:
+      return SampleType::Int16;
+    case GDT_UInt32:
+      return SampleType::UInt32;
+    case GDT_Int32:
+      return SampleType::Int32;
+    case GDT_UInt64:
+      return SampleType::UInt64;
+    case GDT_Int64:
+      return SampleType::Int64;
+    case GDT_Float32:
+      return SampleType::Float32;
+    case GDT_Float64:
+      return SampleType::Float64;
+    default:
+      break;
+  }
+  const char* sign = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  return sign != nullptr && EQUAL(sign, "SIGNEDBYTE") ? SampleType::Int8 : SampleType::UInt8;
+}
+
+}  // namespace
+
+RasterHandle::RasterHandle(GDALDataset* dataset, const Projection* projection)
+    : dataset_(dataset),
+      projection_(projection != nullptr ? std::make_unique<Projection>(projection->clone()) : nullptr) {}
+
+RasterHandle::~RasterHandle() {
+  const GdalMessages messages;
+  GDALClose(dataset_);
+}
+
+/// Outlives the access while a handle is out.
+struct RasterAccess::Pool {
+  std::mutex mutex;
+  std::vector<std::unique_ptr<RasterHandle>> idle;
+};
+
+/// A level in memory, or the part of it that has been read: a cancelled read goes on where it stopped.
+template <class Pixel>
+struct RasterAccess::Resident {
+  std::mutex mutex;
+  std::vector<Pixel> pixels;
+  int rows = 0;
+  std::optional<Error> error;
+};
+
+template <class Pixel>
+struct RasterAccess::Store {
+  explicit Store(std::size_t count) : levels(count) {}
+  std::vector<Resident<Pixel>> levels;
+  std::atomic<std::size_t> bytes{0};
+};
+
+RasterAccess::RasterAccess(RasterDescription description, GDALDataset* dataset, RasterGeoreference georeference)
+    : description_(std::move(description)),
+      where_(description_.where.empty() ? description_.path : description_.where),
+      georeference_(std::move(georeference)),
+      pool_(std::make_shared<Pool>()) {
+  pool_->idle.push_back(std::make_unique<RasterHandle>(dataset, georeference_.projection()));
+}
+
+RasterAccess::~RasterAccess() = default;
+
+Result<void> RasterAccess::examine() {
+  const GdalMessages messages;
+  GDALDataset& dataset = pool_->idle.front()->dataset();
+  levels_ = rasterLevels(dataset);
+  colours_ = std::make_unique<Store<Rgba>>(levels_.size());
+  heights_ = std::make_unique<Store<float>>(levels_.size());
+  heightRule_ = heightRule(dataset, description_);
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  info_.width = dataset.GetRasterXSize();
+  info_.height = dataset.GetRasterYSize();
+  info_.bands = dataset.GetRasterCount();
+  info_.type = sampleType(band);
+  for (int b = 1; b <= info_.bands; ++b) {
+    info_.hasAlpha = info_.hasAlpha || dataset.GetRasterBand(b)->GetColorInterpretation() == GCI_AlphaBand;
+  }
+  info_.hasColourTable = band.GetColorTable() != nullptr;
+  info_.noData = heightRule_.noData;
+  info_.west = georeference_.west();
+  info_.south = georeference_.south();
+  info_.east = georeference_.east();
+  info_.north = georeference_.north();
+  info_.coversAllLongitudes = georeference_.coversAllLongitudes();
+  info_.isGeographic = georeference_.isGeographic();
+  info_.finestPixelAngle = georeference_.finestPixelAngle();
+  info_.heightScale = heightRule_.scale;
+  info_.heightOffset = heightRule_.offset;
+  return {};
+}
+
+Result<void> RasterAccess::prepareColours(GDALDataset& dataset) const {
+  const std::lock_guard lock(colourRuleMutex_);
+  if (hasColourRule_) {
+    return {};
+  }
+  auto rule = colourRule(dataset, where_);
+  if (!rule) {
+    return tl::make_unexpected(rule.error());
+  }
+  colourRule_ = std::move(*rule);
+  hasColourRule_ = true;
+  return {};
+}
+
+int RasterAccess::columnsOfTurn(const RasterLevel& level) const {
+  const int columns = georeference_.columnsOfTurn();
+  return columns == 0 ? 0 : std::max(1, static_cast<int>(std::lround(columns / level.scaleX)));
+}
+
+Result<std::shared_ptr<RasterHandle>> RasterAccess::borrow() const {
+  std::unique_ptr<RasterHandle> handle;
+  {
+    const std::lock_guard lock(pool_->mutex);
+    if (!pool_->idle.empty()) {
+      handle = std::move(pool_->idle.back());
+      pool_->idle.pop_back();
+    }
+  }
+  if (!handle) {
+    const GdalMessages messages;
+    GDALDataset* dataset = GDALDataset::Open(description_.path.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR);
+    if (dataset == nullptr) {
+      return messages.failure("the raster cannot be opened again", where_, "check that the file is still there");
+    }
+    handle = std::make_unique<RasterHandle>(dataset, georeference_.projection());
+    if (dataset->GetRasterXSize() != info_.width || dataset->GetRasterYSize() != info_.height ||
+        dataset->GetRasterCount() != info_.bands) {
+      return failure("the raster has changed since it was opened", where_, "load the layer again");
+    }
+  }
+  return std::shared_ptr<RasterHandle>(handle.release(), [pool = pool_](RasterHandle* returned) {
+    std::unique_ptr<RasterHandle> owner(returned);
+    const std::lock_guard lock(pool->mutex);
+    if (pool->idle.size() < pooledDatasets) {
+      pool->idle.push_back(std::move(owner));
+    }
+  });
+}
+
+bool RasterAccess::isKept(std::size_t level, std::size_t pixelBytes) const {
+  const RasterLevel& l = levels_[level];
+  // Datasets with overviews are laid out for reading windows; nothing is gained by keeping their own levels.
+  const bool isNative = l.factor == 1;
+  const bool hasOverviews = std::any_of(levels_.begin(), levels_.end(), [](const auto& o) { return o.overview >= 0; });
+  return !(isNative && hasOverviews) &&
+         static_cast<std::size_t>(l.width) * static_cast<std::size_t>(l.height) * pixelBytes <= keptBytes;
+}
+
+template <class Pixel>
+Result<void> RasterAccess::readStrips(RasterHandle& handle, const RasterLevel& level, const PixelWindow& window,
+                                      Pixel* out, std::ptrdiff_t stride, const std::stop_token& stop) const {
+  const int factor = level.factor;
+  const bool isFull = level.overview < 0;
+  GDALRasterBand* band = handle.dataset().GetRasterBand(1);
+  GDALRasterBand* native = isFull ? band : band->GetOverview(level.overview);
+  if (native == nullptr) {
+    return failure("the raster has lost an overview", where_, "load the layer again");
+  }
+  const int nativeX = window.x * factor;
+  const int nativeWidth = std::min(window.width * factor, native->GetXSize() - nativeX);
+  const auto rowBytes = static_cast<std::size_t>(nativeWidth) * static_cast<std::size_t>(factor) * sizeof(Pixel);
+  const int rowsAtOnce = static_cast<int>(std::clamp<std::size_t>(stripBytes / std::max<std::size_t>(rowBytes, 1), 1,
+                                                                  static_cast<std::size_t>(window.height)));
+  std::vector<Pixel> strip;
+  for (int row = 0; row < window.height; row += rowsAtOnce) {
+    if (stop.stop_requested()) {
+      return cancelled(where_);
+    }
+    const int rows = std::min(rowsAtOnce, window.height - row);
+    const int nativeY = (window.y + row) * factor;
+    const int nativeHeight = std::min(rows * factor, native->GetYSize() - nativeY);
+    const PixelWindow part{nativeX, nativeY, nativeWidth, nativeHeight};
+    const bool isDirect = factor == 1 && stride == window.width;
+    strip.resize(isDirect ? 0 : static_cast<std::size_t>(nativeWidth) * static_cast<std::size_t>(nativeHeight));
+    Pixel* target = out + row * stride;
+    auto done =
+        readPixels(handle.dataset(), rule(target), level.overview, part, isDirect ? target : strip.data(), where_);
+    if (!done || isDirect) {
+      if (!done) {
+        return done;
+      }
+      continue;
+    }
+    for (int r = 0; r < rows; ++r) {
+      const Pixel* from = strip.data() + static_cast<std::ptrdiff_t>(r) * factor * nativeWidth;
+      if (factor == 1) {
+        std::copy(from, from + nativeWidth, target + r * stride);
+      } else {
+        reduce(from, nativeWidth, std::min(factor, nativeHeight - r * factor), factor, target + r * stride);
+      }
+    }
+  }
+  return {};
+}
+
+template <class Pixel>
+Result<const Pixel*> RasterAccess::resident(RasterHandle& handle, std::size_t level,
+                                            const std::stop_token& stop) const {
+  Store<Pixel>& all = store(static_cast<const Pixel*>(nullptr));
+  Resident<Pixel>& kept = all.levels[level];
+  const RasterLevel& l = levels_[level];
+  const std::lock_guard lock(kept.mutex);
+  if (kept.error) {
+    return tl::make_unexpected(*kept.error);
+  }
+  if (kept.pixels.empty()) {
+    const std::size_t count = static_cast<std::size_t>(l.width) * static_cast<std::size_t>(l.height);
+    kept.pixels.resize(count);
+    all.bytes += count * sizeof(Pixel);
+  }
+  const bool fromFiner =
+      l.factor > 1 && level > 0 && isKept(level - 1, sizeof(Pixel)) && levels_[level - 1].overview == l.overview;
+  const Pixel* finer = nullptr;
+  if (fromFiner && kept.rows < l.height) {
+    auto found = resident<Pixel>(handle, level - 1, stop);
+    if (!found) {
+      return found;
+    }
+    finer = *found;
+  }
+  constexpr int rowsAtOnce = 64;
+  while (kept.rows < l.height) {
+    if (stop.stop_requested()) {
+      return cancelled(where_);
+    }
+    const int rows = std::min(rowsAtOnce, l.height - kept.rows);
+    Pixel* target = kept.pixels.data() + static_cast<std::ptrdiff_t>(kept.rows) * l.width;
+    if (finer != nullptr) {
+      const RasterLevel& f = levels_[level - 1];
+      const int from = kept.rows * 2;
+      reduce(finer + static_cast<std::ptrdiff_t>(from) * f.width, f.width, std::min(rows * 2, f.height - from), 2,
+             target);
+    } else if (auto done = readStrips(handle, l, {0, kept.rows, l.width, rows}, target, l.width, stop); !done) {
+      if (!stop.stop_requested()) {
+        kept.error = done.error();
+      }
+      return tl::make_unexpected(done.error());
+    }
+    kept.rows += rows;
+  }
+  return kept.pixels.data();
+}
+
+template <class Pixel>
+Result<void> RasterAccess::read(RasterHandle& handle, std::size_t level, const PixelWindow& window, Pixel* out,
+                                std::ptrdiff_t stride, const std::stop_token& stop) const {
+  if (!isKept(level, sizeof(Pixel))) {
+    return readStrips(handle, levels_[level], window, out, stride, stop);
+  }
+  auto pixels = resident<Pixel>(handle, level, stop);
+  if (!pixels) {
+    return tl::make_unexpected(pixels.error());
+  }
+  for (int row = 0; row < window.height; ++row) {
+    const Pixel* from = *pixels + static_cast<std::ptrdiff_t>(window.y + row) * levels_[level].width + window.x;
+    std::copy(from, from + window.width, out + row * stride);
+  }
+  return {};
+}
+
+/// Where an unbounded column and row are within the level; `turned` when the row lies beyond a pole.
+struct RasterAccess::Cell {
+  int x = 0;
+  int y = 0;
+  bool turned = false;
+};
+
+RasterAccess::Cell RasterAccess::cell(const RasterLevel& level, int x, int y) const {
+  Cell result{x, y};
+  const int turn = columnsOfTurn(level);
+  if (turn > 0 && (y < 0 || y >= level.height)) {
+    // The pole's own row coordinate; it need not be the raster's edge (node-registered rasters).
+    const bool isFirst = y < 0;
+    const bool northFirst = georeference_.row(1.0) < georeference_.row(-1.0);
+    const double pole = georeference_.row((isFirst == northFirst ? 1.0 : -1.0) * std::acos(0.0)) / level.scaleY;
+    if (std::abs(pole - (isFirst ? 0 : level.height)) < 1.0) {
+      result.y = static_cast<int>(std::lround(2.0 * pole - y - 1.0));
+      result.turned = true;
+    }
+  }
+  result.y = std::clamp(result.y, 0, level.height - 1);
+  if (turn > 0) {
+    const int first = static_cast<int>(std::lround(georeference_.firstColumn() / level.scaleX));
+    const int offset = (x - first + (result.turned ? turn / 2 : 0)) % turn;
+    result.x = first + (offset < 0 ? offset + turn : offset);
+  }
+  result.x = std::clamp(result.x, 0, level.width - 1);
+  return result;
+}
+
+template <class Pixel>
+Result<void> RasterAccess::fetchUnbounded(RasterHandle& handle, std::size_t level, const UnboundedWindow& window,
+                                          Pixel* out, const std::stop_token& stop) const {
+  const RasterLevel& l = levels_[level];
+  for (int row = 0; row < window.height;) {
+    const Cell start = cell(l, window.x, window.y + row);
+    int rows = 1;
+    while (row + rows < window.height) {
+      const Cell next = cell(l, window.x, window.y + row + rows);
+      if (next.y != start.y + rows || next.turned != start.turned) {
+        break;
+      }
+      ++rows;
+    }
+    Pixel* target = out + static_cast<std::ptrdiff_t>(row) * window.width;
+    for (int column = 0; column < window.width;) {
+      const Cell from = cell(l, window.x + column, window.y + row);
+      int columns = 1;
+      while (column + columns < window.width &&
+             cell(l, window.x + column + columns, window.y + row).x == from.x + columns) {
+        ++columns;
+      }
+      auto done = read(handle, level, {from.x, from.y, columns, rows}, target + column, window.width, stop);
+      if (!done) {
+        return done;
+      }
+      column += columns;
+    }
+    row += rows;
+  }
+  return {};
+}
+
+Result<void> RasterAccess::fetch(RasterHandle& handle, std::size_t level, const UnboundedWindow& window, Rgba* out,
+                                 const std::stop_token& stop) const {
+  if (auto ready = prepareColours(handle.dataset()); !ready) {
+    return ready;
+  }
+  return fetchUnbounded(handle, level, window, out, stop);
+}
+
+Result<void> RasterAccess::fetch(RasterHandle& handle, std::size_t level, const UnboundedWindow& window, float* out,
+                                 const std::stop_token& stop) const {
+  return fetchUnbounded(handle, level, window, out, stop);
+}
+
+std::size_t RasterAccess::residentBytes() const {
+  return colours_->bytes + heights_->bytes;
+}
+
+}  // namespace meridian::globebrowsing

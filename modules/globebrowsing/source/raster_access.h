@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "globebrowsing/source/raster_georeference.h"
+#include "globebrowsing/source/raster_levels.h"
+
+namespace meridian::globebrowsing {
+
+/// A dataset and a projection that belong to one thread at a time.
+class RasterHandle {
+ public:
+  RasterHandle(GDALDataset* dataset, const Projection* projection);
+  ~RasterHandle();
+  RasterHandle(const RasterHandle&) = delete;
+  RasterHandle& operator=(const RasterHandle&) = delete;
+  [[nodiscard]] GDALDataset& dataset() const { return *dataset_; }
+  /// Null when the raster is in geographic coordinates.
+  [[nodiscard]] const Projection* projection() const { return projection_.get(); }
+
+ private:
+  GDALDataset* dataset_;
+  std::unique_ptr<Projection> projection_;
+};
+
+/// Columns and rows of a level that may run over its edges: x beyond a whole turn goes round, y beyond a pole goes down
+/// the other side, anything else repeats the edge.
+using UnboundedWindow = PixelWindow;
+
+/// What resampling needs of a raster: its pixels at any level, from memory where they are kept. Safe from any thread.
+class RasterAccess {
+ public:
+  /// `dataset` is open and becomes the first of the pool.
+  RasterAccess(RasterDescription description, GDALDataset* dataset, RasterGeoreference georeference);
+  [[nodiscard]] Result<void> examine();  ///< fills info; call once, before anything else
+  ~RasterAccess();
+
+  [[nodiscard]] const RasterDescription& description() const { return description_; }
+  [[nodiscard]] const std::string& where() const { return where_; }
+  [[nodiscard]] const RasterInfo& info() const { return info_; }
+  [[nodiscard]] const RasterGeoreference& georeference() const { return georeference_; }
+  [[nodiscard]] const std::vector<RasterLevel>& levels() const { return levels_; }
+  /// Columns of a whole turn at that level; 0 when the raster does not go round.
+  [[nodiscard]] int columnsOfTurn(const RasterLevel& level) const;
+
+  /// The borrowed handle goes back to the pool when the pointer is destroyed.
+  [[nodiscard]] Result<std::shared_ptr<RasterHandle>> borrow() const;
+
+  [[nodiscard]] Result<void> fetch(RasterHandle& handle, std::size_t level, const UnboundedWindow& window, Rgba* out,
+                                   const std::stop_token& stop) const;
+  [[nodiscard]] Result<void> fetch(RasterHandle& handle, std::size_t level, const UnboundedWindow& window, float* out,
+                                   const std::stop_token& stop) const;
+
+  /// Bytes of pixels kept in memory.
+  [[nodiscard]] std::size_t residentBytes() const;
+
+ private:
+  template <class Pixel>
+  struct Resident;
+  template <class Pixel>
+  struct Store;
+  struct Cell;
+
+  [[nodiscard]] const ColourRule& rule(const Rgba*) const { return colourRule_; }
+  [[nodiscard]] const HeightRule& rule(const float*) const { return heightRule_; }
+  [[nodiscard]] Store<Rgba>& store(const Rgba*) const { return *colours_; }
+  [[nodiscard]] Store<float>& store(const float*) const { return *heights_; }
+  [[nodiscard]] Cell cell(const RasterLevel& level, int x, int y) const;
+  [[nodiscard]] Result<void> prepareColours(GDALDataset& dataset) const;
+  [[nodiscard]] bool isKept(std::size_t level, std::size_t pixelBytes) const;
+
+  template <class Pixel>
+  Result<void> fetchUnbounded(RasterHandle& handle, std::size_t level, const UnboundedWindow& window, Pixel* out,
+                              const std::stop_token& stop) const;
+  /// Within the level; rows of `stride` pixels.
+  template <class Pixel>
+  Result<void> read(RasterHandle& handle, std::size_t level, const PixelWindow& window, Pixel* out,
+                    std::ptrdiff_t stride, const std::stop_token& stop) const;
+  template <class Pixel>
+  Result<void> readStrips(RasterHandle& handle, const RasterLevel& level, const PixelWindow& window, Pixel* out,
+                          std::ptrdiff_t stride, const std::stop_token& stop) const;
+  template <class Pixel>
+  Result<const Pixel*> resident(RasterHandle& handle, std::size_t level, const std::stop_token& stop) const;
+
+  RasterDescription description_;
+  std::string where_;
+  RasterGeoreference georeference_;
+  RasterInfo info_;
+  std::vector<RasterLevel> levels_;
+  HeightRule heightRule_;
+  mutable std::mutex colourRuleMutex_;
+  mutable bool hasColourRule_ = false;
+  mutable ColourRule colourRule_;
+
+  struct Pool;
+  std::shared_ptr<Pool> pool_;
+  mutable std::unique_ptr<Store<Rgba>> colours_;
+  mutable std::unique_ptr<Store<float>> heights_;
+};
+
+}  // namespace meridian::globebrowsing

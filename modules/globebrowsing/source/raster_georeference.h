@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "globebrowsing/source/raster_source.h"
+
+class GDALDataset;
+class OGRCoordinateTransformation;
+
+namespace meridian::globebrowsing {
+
+/// Geographic coordinates of the raster's own body to its projected ones. Belongs to one thread at a time.
+class Projection {
+ public:
+  explicit Projection(std::unique_ptr<OGRCoordinateTransformation> transformation);
+  Projection(Projection&&) noexcept;
+  ~Projection();
+  [[nodiscard]] OGRCoordinateTransformation& transformation() const { return *transformation_; }
+  [[nodiscard]] Projection clone() const;
+
+ private:
+  std::unique_ptr<OGRCoordinateTransformation> transformation_;
+};
+
+/// Where a raster lies on its globe: longitude and latitude in radians to pixel coordinates (columns from the left
+/// edge, rows from the top edge, of full resolution; a pixel's centre is at its number + 0.5).
+class RasterGeoreference {
+ public:
+  [[nodiscard]] static Result<RasterGeoreference> of(GDALDataset& dataset, const RasterDescription& description);
+
+  /// Rows are parallels and columns meridians.
+  [[nodiscard]] bool isGeographic() const { return isGeographic_; }
+  /// Columns of one turn of longitude where the raster holds one, else 0.
+  [[nodiscard]] int columnsOfTurn() const { return columnsOfTurn_; }
+  /// The first of them: rasters may hold more than one turn.
+  [[nodiscard]] int firstColumn() const { return firstColumn_; }
+
+  /// Geographic rasters only. Outside the raster the answer is outside 0..width, 0..height.
+  [[nodiscard]] double column(double longitude) const;
+  [[nodiscard]] double row(double latitude) const { return (latitude - topLatitude_) / rowStep_; }
+
+  /// Turns longitudes into columns and latitudes into rows, in place; not-a-number where there is no such place.
+  /// `projection` is a clone of this one's, or null when there is none.
+  void toPixels(const Projection* projection, std::span<double> longitudes, std::span<double> latitudes) const;
+  [[nodiscard]] const Projection* projection() const { return projection_.get(); }
+
+  /// Extent and pixel sizes, as in RasterInfo.
+  [[nodiscard]] double west() const { return west_; }
+  [[nodiscard]] double south() const { return south_; }
+  [[nodiscard]] double east() const { return east_; }
+  [[nodiscard]] double north() const { return north_; }
+  [[nodiscard]] bool coversAllLongitudes() const { return coversAllLongitudes_; }
+  [[nodiscard]] double finestPixelAngle() const { return finestPixelAngle_; }
+  /// Of a pixel's width and height at the raster's middle (geographic: along the equator and a meridian).
+  [[nodiscard]] double pixelWidthAngle() const { return pixelWidthAngle_; }
+  [[nodiscard]] double pixelHeightAngle() const { return pixelHeightAngle_; }
+
+ private:
+  RasterGeoreference() = default;
+  void setGeographic(const std::array<double, 6>& degreesFromPixel);
+  [[nodiscard]] Result<void> setProjected(const std::array<double, 6>& crsFromPixel, const std::string& where);
+  [[nodiscard]] Result<void> measure(const std::string& where);
+
+  int width_ = 0;
+  int height_ = 0;
+  bool isGeographic_ = false;
+  int columnsOfTurn_ = 0;
+  int firstColumn_ = 0;
+  double leftLongitude_ = 0.0;  ///< of column coordinate 0
+  double columnStep_ = 0.0;     ///< radians a column; negative where longitude runs westward
+  double topLatitude_ = 0.0;    ///< of row coordinate 0
+  double rowStep_ = 0.0;        ///< radians a row; negative where the first row is in the north
+
+  std::shared_ptr<const Projection> projection_;
+  std::array<double, 6> crsFromPixel_{};
+  std::array<double, 6> pixelFromCrs_{};
+  double crsUnit_ = 1.0;        ///< radians in a unit of the geographic coordinates
+  double primeMeridian_ = 0.0;  ///< radians
+  double eastward_ = 1.0;       ///< -1 where the CRS counts longitude westward
+
+  double west_ = 0.0;
+  double south_ = 0.0;
+  double east_ = 0.0;
+  double north_ = 0.0;
+  bool coversAllLongitudes_ = false;
+  double finestPixelAngle_ = 0.0;
+  double pixelWidthAngle_ = 0.0;
+  double pixelHeightAngle_ = 0.0;
+};
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,157 @@
+#include "globebrowsing/source/raster_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include <gdal_priv.h>
+
+#include "globebrowsing/source/gdal_runtime.h"
+#include "globebrowsing/source/raster_access.h"
+#include "globebrowsing/source/resample_parts.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// South, north, and the longitudes about `middle`, that a tile does not reach beyond.
+struct Bounds {
+  double south = 0.0;
+  double north = 0.0;
+  double middle = 0.0;
+  double halfWidth = 0.0;
+};
+
+Bounds boundsOf(const Tiling& tiling, const TileIndex& index) {
+  constexpr int cells = 8;
+  const double middle = tiling.geodetic(index, {0.5, 0.5}).longitude;
+  Bounds bounds{pi / 2, -pi / 2, middle, 0.0};
+  for (int v = 0; v <= cells; ++v) {
+    for (int u = 0; u <= cells; ++u) {
+      const GeodeticPosition place = tiling.geodetic(index, {u / double{cells}, v / double{cells}});
+      bounds.south = std::min(bounds.south, place.latitude);
+      bounds.north = std::max(bounds.north, place.latitude);
+      if (std::abs(place.latitude) < pi / 2 - 1e-12) {  // a pole is at every longitude
+        bounds.halfWidth = std::max(bounds.halfWidth, std::abs(std::remainder(place.longitude - middle, 2.0 * pi)));
+      }
+    }
+  }
+  if (tiling.isSeparable()) {
+    return bounds;
+  }
+  // Between the points that were looked at, an edge bulges by less than a quarter of a cell.
+  const double margin = (bounds.north - bounds.south) / cells / 4;
+  bounds.south -= margin;
+  bounds.north += margin;
+  const double polar = std::max(std::abs(bounds.south), std::abs(bounds.north));
+  bounds.halfWidth = polar + 2 * margin >= pi / 2 ? pi : std::min(bounds.halfWidth * (1 + 0.5 / cells), pi);
+  return bounds;
+}
+
+Result<void> checkPath(const RasterDescription& description, const std::string& where) {
+  if (description.path.empty()) {
+    return failure("no raster is named", where, "give a file, a GDAL connection string or a VRT document");
+  }
+  return {};
+}
+
+tl::unexpected<Error> cannotOpen(const GdalMessages& messages, const std::string& path, const std::string& where) {
+  std::error_code ignored;
+  const std::filesystem::path file(path.size() < 4096 ? path : std::string{});
+  if (std::filesystem::is_directory(file, ignored)) {
+    return failure("'" + path + "' is a folder, not a raster", where, "name a file in it");
+  }
+  if (path.front() == '/' && !path.starts_with("/vsi") && !std::filesystem::exists(file, ignored)) {
+    return failure("there is no file '" + path + "'", where, "check the path");
+  }
+  return messages.failure("this is no raster that GDAL can read", where,
+                          "check the path and the file; gdalinfo says more");
+}
+
+Result<void> checkBands(GDALDataset& dataset, const std::string& where) {
+  if (dataset.GetRasterCount() == 0) {
+    return failure("the raster has no bands", where, "name one of its subdatasets, which gdalinfo lists");
+  }
+  for (int band = 1; band <= dataset.GetRasterCount(); ++band) {
+    if (GDALDataTypeIsComplex(dataset.GetRasterBand(band)->GetRasterDataType()) != 0) {
+      return failure("the raster has complex samples", where, "convert it to real ones with gdal_translate");
+    }
+  }
+  if (dataset.GetRasterXSize() < 1 || dataset.GetRasterYSize() < 1) {
+    return failure("the raster has no pixels", where);
+  }
+  // Absurd headers announce more than is there; a block is what GDAL allocates at once.
+  int blockWidth = 0;
+  int blockHeight = 0;
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  band.GetBlockSize(&blockWidth, &blockHeight);
+  const double blockBytes = double{1.0} * blockWidth * blockHeight * GDALGetDataTypeSizeBytes(band.GetRasterDataType());
+  if (blockBytes > 1e9) {
+    return failure("the raster's blocks are larger than a gigabyte", where,
+                   "tile it with gdal_translate -co TILED=YES");
+  }
+  return {};
+}
+
+}  // namespace
+
+RasterSource::RasterSource(std::unique_ptr<RasterAccess> access) : access_(std::move(access)) {}
+RasterSource::~RasterSource() = default;
+
+Result<std::shared_ptr<RasterSource>> RasterSource::open(const RasterDescription& description) {
+  initializeGdal();
+  const std::string& where = description.where.empty() ? description.path : description.where;
+  if (auto named = checkPath(description, where); !named) {
+    return tl::make_unexpected(named.error());
+  }
+  const GdalMessages messages;
+  GDALDatasetUniquePtr dataset(GDALDataset::Open(description.path.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
+  if (!dataset) {
+    return cannotOpen(messages, description.path, where);
+  }
+  if (auto good = checkBands(*dataset, where); !good) {
+    return tl::make_unexpected(good.error());
+  }
+  auto georeference = RasterGeoreference::of(*dataset, description);
+  if (!georeference) {
+    return tl::make_unexpected(georeference.error());
+  }
+  auto access = std::make_unique<RasterAccess>(description, dataset.release(), std::move(*georeference));
+  if (auto examined = access->examine(); !examined) {
+    return tl::make_unexpected(examined.error());
+  }
+  return std::shared_ptr<RasterSource>(new RasterSource(std::move(access)));
+}
+
+const RasterInfo& RasterSource::info() const {
+  return access_->info();
+}
+
+const RasterDescription& RasterSource::description() const {
+  return access_->description();
+}
+
+std::size_t RasterSource::residentBytes() const {
+  return access_->residentBytes();
+}
+
+bool RasterSource::overlaps(const Tiling& tiling, const TileIndex& index) const {
+  const RasterInfo& raster = info();
+  const Bounds tile = boundsOf(tiling, index);
+  if (tile.south > raster.north || tile.north < raster.south) {
+    return false;
+  }
+  const double halfWidth = (raster.east - raster.west) / 2;
+  const double apart = std::abs(std::remainder(tile.middle - (raster.west + halfWidth), 2.0 * pi));
+  return raster.coversAllLongitudes || apart <= halfWidth + tile.halfWidth;
+}
+
+bool RasterSource::hasDataFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const {
+  // A raster on the very grid of the tiles differs by rounding only.
+  return info().finestPixelAngle < 0.99 * nominalSpacing(tiling, index, layout) && overlaps(tiling, index);
+}
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,96 @@
+#include "globebrowsing/surface/chunked_surface.h"
+
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "globebrowsing/surface/height_query.h"
+#include "host/api/log.h"
+#include "host/api/statistics.h"
+
+namespace meridian::globebrowsing {
+
+Result<std::unique_ptr<ChunkedSurface>> ChunkedSurface::create(Parts parts, const GlobeTiles::Options& options) {
+  Result<std::unique_ptr<GlobeTiles>> tiles =
+      GlobeTiles::create(*parts.graphics, parts.tiling, *parts.layers, *parts.streamer, options);
+  return std::move(tiles).map([&](std::unique_ptr<GlobeTiles> made) {
+    return std::unique_ptr<ChunkedSurface>(new ChunkedSurface(std::move(parts), std::move(made)));
+  });
+}
+
+ChunkedSurface::ChunkedSurface(Parts parts, std::unique_ptr<GlobeTiles> tiles)
+    : parts_(std::move(parts)), tiles_(std::move(tiles)), renderer_(*parts_.graphics), tree_(*parts_.tiling) {}
+
+void ChunkedSurface::update(const FrameContext& frame, const SurfaceSettings& settings) {
+  settings_ = settings;
+  if (frameOpen_) {
+    renderer_.endFrame();
+  }
+  frameOpen_ = true;
+  renderer_.beginFrame();
+  tiles_->beginFrame(frame.number);
+  const ChunkProgramKey key{settings.shading, settings.shading && settings.accurateNormals,
+                            settings.shading && tiles_->composites().inUse(CompositeKind::Night),
+                            tiles_->composites().inUse(CompositeKind::Overlay), settings.showEdges};
+  if (const Result<void> program = renderer_.setProgram(key); !program) {
+    if (programTrouble_ != program.error().message()) {
+      programTrouble_ = program.error().message();
+      log::error("{}", programTrouble_);
+    }
+  }
+  select(frame, settings);
+  tiles_->process(parts_.graphics->uploads(), settings.compositionMilliseconds);
+}
+
+void ChunkedSurface::select(const FrameContext& frame, const SurfaceSettings& settings) {
+  const auto start = std::chrono::steady_clock::now();
+  views_.clear();
+  for (const View& view : frame.views) {
+    views_.push_back({view.cameraPosition, view.clipFromCamera * view.cameraFromModel, view.pixelsPerRadian});
+  }
+  SelectionSettings selection = settings.selection;
+  selection.lowestHeight = tiles_->surfaces().lowestHeight();
+  tree_.select(views_, selection, *tiles_);
+  Statistics& statistics = parts_.graphics->statistics();
+  statistics.frame.select +=
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const SelectionFigures& figures = tree_.figures();
+  statistics.chunks.drawn += static_cast<std::uint32_t>(tree_.selected().size());
+  statistics.chunks.tree += figures.nodes;
+  statistics.chunks.culledFrustum += figures.culledFrustum;
+  statistics.chunks.culledHorizon += figures.culledHorizon;
+}
+
+void ChunkedSurface::draw(const FrameContext& frame, std::size_t view) {
+  renderer_.draw({tree_.selected(), &frame.views[view], view, settings_.ambient, settings_.opacity, true}, *tiles_);
+}
+
+Settled ChunkedSurface::settled(std::size_t /*view*/) const {
+  // One selection serves all views, so they settle together.
+  if (!programTrouble_.empty()) {
+    return {true, programTrouble_};
+  }
+  if (const std::string error = renderer_.programError(); !error.empty()) {
+    return {true, error};
+  }
+  if (!renderer_.ownProgramReady()) {
+    return {false, "the program that draws chunks is being built"};
+  }
+  if (std::string reason = tiles_->waitingFor(); !reason.empty()) {
+    return {false, std::move(reason)};
+  }
+  if (!tree_.figures().atTarget && !tiles_->composites().full()) {
+    return {false, fmt::format("{} chunks are not at their target", tree_.figures().missing)};
+  }
+  return {};
+}
+
+double ChunkedSurface::heightAt(double latitude, double longitude) const {
+  return globebrowsing::heightAt(tiles_->surfaces(), *parts_.tiling, latitude, longitude);
+}
+
+std::optional<glm::dvec3> ChunkedSurface::pick(const glm::dvec3& origin, const glm::dvec3& direction) const {
+  return globebrowsing::pick(tiles_->surfaces(), *parts_.tiling, origin, direction);
+}
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,244 @@
+// The program as a user runs it: arguments in, exit code, messages and files out.
+#include <sys/wait.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "host/graphics/image.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct Outcome {
+  int code = -1;  ///< 128 + signal when one ended it
+  std::string out;
+  std::string errors;
+};
+
+std::string readFile(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class CommandLine : public ::testing::Test {
+ protected:
+  CommandLine() {
+    std::string path = (fs::temp_directory_path() / "meridian-cli-XXXXXX").string();
+    folder_ = mkdtemp(path.data());
+  }
+  ~CommandLine() override { fs::remove_all(folder_); }
+
+  fs::path in(const std::string& name) const { return folder_ / name; }
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    fs::create_directories(in(name).parent_path());
+    std::ofstream(in(name)) << text;
+    return in(name);
+  }
+
+  /// An asset of one node that shows nothing.
+  fs::path emptyScene() const {
+    return write("empty.asset", R"(
+      local node = { Identifier = "Place", BoundingSphere = 1000.0 }
+      asset.onInitialize(function() openspace.addSceneGraphNode(node) end)
+      asset.onDeinitialize(function() openspace.removeSceneGraphNode(node) end)
+    )");
+  }
+
+  /// `arguments` as typed in a shell; without any display. `prefix`: environment and such.
+  Outcome run(const std::string& arguments, const std::string& prefix = "") const {
+    const std::string command = "cd '" + folder_.string() + "' && env -u DISPLAY -u WAYLAND_DISPLAY " + prefix +
+                                " timeout 60 '" MERIDIAN_PROGRAM "' " + arguments + " >out.txt 2>errors.txt";
+    const int status = std::system(command.c_str());
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return {code, readFile(in("out.txt")), readFile(in("errors.txt"))};
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(CommandLine, HelpGoesToStandardOutput) {
+  const Outcome outcome = run("--help");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("--headless"));
+  EXPECT_EQ(outcome.errors, "");
+}
+
+TEST_F(CommandLine, VersionIsPrinted) {
+  const Outcome outcome = run("--version");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("meridian "));
+}
+
+TEST_F(CommandLine, WrongUsageEndsWithTwoAndOneLine) {
+  for (const char* arguments : {"--nonsense", "--size 0x0 --headless", "--headless --output picture.bmp",
+                                "--set A.B=[[unfinished", "--set A.B=word", "--set 'A.B=function() end'"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
+    EXPECT_EQ(outcome.out, "");
+  }
+}
+
+TEST_F(CommandLine, ASceneWithoutGlobesIsABlackPictureOfTheRightSize) {
+  emptyScene();
+  const Outcome outcome = run("empty.asset --headless --size 320x200 --output picture.png --stats stats.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.errors;
+  const auto image = meridian::graphics::readPng(in("picture.png"));
+  ASSERT_TRUE(image) << image.error().message();
+  EXPECT_EQ(image->size, glm::ivec2(320, 200));
+  for (std::size_t i = 0; i < image->pixels.size(); i += 4) {
+    ASSERT_EQ(image->pixels[i] + image->pixels[i + 1] + image->pixels[i + 2], 0) << "at " << i / 4;
+  }
+  const auto stats = nlohmann::json::parse(readFile(in("stats.json")));
+  EXPECT_EQ(stats["frames"], 1);
+  EXPECT_GT(stats["frame_ms"]["median"], 0.0);
+  EXPECT_GT(stats["memory"]["peak_rss"], 1'000'000);
+}
+
+TEST_F(CommandLine, FramesGoIntoAFolderAndAVideo) {
+  emptyScene();
+  const Outcome folder = run("empty.asset --headless --size 64x64 --frames 3 --fps 25 --output frames --settle 1");
+  ASSERT_EQ(folder.code, 0) << folder.errors;
+  EXPECT_TRUE(fs::exists(in("frames/frame_000002.png")));
+  EXPECT_FALSE(fs::exists(in("frames/frame_000003.png")));
+  const Outcome video = run("empty.asset --headless --size 64x64 --frames 3 --output video.mkv");
+  ASSERT_EQ(video.code, 0) << video.errors;
+  EXPECT_GT(fs::file_size(in("video.mkv")), 100U);
+}
+
+TEST_F(CommandLine, OutputThatCannotBeWrittenFailsBeforeDrawing) {
+  emptyScene();
+  write("file", "x");
+  const Outcome outcome = run("empty.asset --headless --output file/below/picture.png");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("file/below"));
+}
+
+TEST_F(CommandLine, StatsThatCannotBeWrittenFail) {
+  emptyScene();
+  const Outcome outcome = run("empty.asset --headless --size 8x8 --stats missing/stats.json");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("missing/stats.json"));
+}
+
+TEST_F(CommandLine, BadAssetsFailWithTheirPlace) {
+  write("syntax.asset", "local a = \n\n = 3\n");
+  write("endless.asset", "while true do end\n");
+  fs::create_directories(in("folder.asset"));
+  const std::pair<const char*, const char*> cases[] = {
+      {"missing.asset", "missing.asset"},
+      {"syntax.asset", "syntax.asset:3"},
+      {"endless.asset", "endless.asset:1"},
+      {"folder.asset", "folder.asset"},
+  };
+  for (const auto& [asset, says] : cases) {
+    const Outcome shown = run(std::string(asset) + " --headless --size 8x8 --output picture.png");
+    EXPECT_EQ(shown.code, 1) << asset;
+    EXPECT_THAT(shown.errors, HasSubstr(says));
+    EXPECT_FALSE(fs::exists(in("picture.png"))) << asset;
+  }
+}
+
+TEST_F(CommandLine, ABadAssetDoesNotTakeTheOthersDown) {
+  emptyScene();
+  write("syntax.asset", "local = 3\n");
+  const Outcome outcome = run("syntax.asset empty.asset --headless --size 8x8 --output picture.png");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_TRUE(fs::exists(in("picture.png")));
+}
+
+TEST_F(CommandLine, ValidateCountsAndEndsWithThree) {
+  write("assets/good.asset", "asset.export('number', 3)\n");
+  write("assets/below/bad.asset", "local = 3\n");
+  const Outcome bad = run("--validate assets");
+  EXPECT_EQ(bad.code, 3);
+  EXPECT_EQ(bad.out, "assets 1 ok 1 failed; globes 0; layers 0 usable 0\n");
+  EXPECT_THAT(bad.errors, HasSubstr("bad.asset:1"));
+  const Outcome good = run("--validate assets/good.asset");
+  EXPECT_EQ(good.code, 0) << good.errors;
+  EXPECT_EQ(good.out, "assets 1 ok 0 failed; globes 0; layers 0 usable 0\n");
+  const Outcome missing = run("--validate nowhere");
+  EXPECT_EQ(missing.code, 3);
+  EXPECT_THAT(missing.errors, HasSubstr("nowhere"));
+}
+
+TEST_F(CommandLine, WithoutADisplayItSaysSo) {
+  emptyScene();
+  const Outcome window = run("empty.asset");
+  EXPECT_EQ(window.code, 1);
+  EXPECT_THAT(window.errors, HasSubstr("--headless"));
+  const Outcome fallback = run("empty.asset --size 8x8 --output picture.png");
+  EXPECT_EQ(fallback.code, 0) << fallback.errors;
+  EXPECT_THAT(fallback.errors, HasSubstr("off screen"));
+  EXPECT_TRUE(fs::exists(in("picture.png")));
+}
+
+TEST_F(CommandLine, SettingsAndScriptsReachTheScene) {
+  emptyScene();
+  write("check.lua", R"(
+    openspace.printInfo("samples " .. openspace.propertyValue("RenderEngine.Antialiasing"))
+    openspace.printInfo("time " .. openspace.time.UTC())
+  )");
+  const Outcome outcome = run(
+      "empty.asset --headless --size 8x8 --frames 2 --time 2026-03-20T14:46:00 --set RenderEngine.Antialiasing=4 "
+      "--script check.lua --output picture.png");
+  ASSERT_EQ(outcome.code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.errors, HasSubstr("samples 4"));
+  EXPECT_THAT(outcome.errors, HasSubstr("2026-03-20T14:46:00"));
+}
+
+TEST_F(CommandLine, WhatTheSceneRefusesFails) {
+  emptyScene();
+  write("bad.lua", "error('oops')\n");
+  for (const char* arguments : {"--set No.Such.Property=1", "--set RenderEngine.Antialiasing=99", "--anchor Nowhere",
+                                "--camera 0,0,1000", "--script missing.lua", "--script bad.lua", "--play missing.osrec",
+                                "--record missing/folder/r.osrectxt"}) {
+    const Outcome outcome = run(std::string("empty.asset --headless --size 8x8 ") + arguments);
+    EXPECT_EQ(outcome.code, 1) << arguments;
+    EXPECT_NE(outcome.errors, "") << arguments;
+  }
+}
+
+TEST_F(CommandLine, ARecordingIsPlayedToItsEnd) {
+  emptyScene();
+  write("flight.osrectxt",
+        "OpenSpace_record/playback03.00A\n"
+        "camera 0.0 0.0 0.0 0.0 0.0 5000.0 0.0 0.0 0.0 1.0 1.0 - Place\n"
+        "camera 0.5 0.5 0.5 0.0 0.0 3000.0 0.0 0.0 0.0 1.0 1.0 - Place\n");
+  const Outcome outcome = run("empty.asset --headless --size 8x8 --play flight.osrectxt --fps 10 --output frames");
+  ASSERT_EQ(outcome.code, 0) << outcome.errors;
+  EXPECT_TRUE(fs::exists(in("frames/frame_000005.png")));
+  EXPECT_FALSE(fs::exists(in("frames/frame_000006.png")));
+}
+
+TEST_F(CommandLine, AnInterruptedRunClosesItsOutput) {
+  emptyScene();
+  const Outcome outcome = run(
+      "empty.asset --headless --size 64x64 --frames 1000000 --output video.mkv --stats stats.json", "timeout -s INT 3");
+  EXPECT_EQ(outcome.code, 124) << outcome.errors;  // timeout's own code: it had to interrupt
+  EXPECT_THAT(outcome.errors, HasSubstr("interrupted"));
+  EXPECT_GT(nlohmann::json::parse(readFile(in("stats.json")))["frames"], 1);
+}
+
+TEST_F(CommandLine, AnUnwritableCacheOnlyWarns) {
+  emptyScene();
+  const Outcome outcome = run("empty.asset --headless --size 8x8 --output picture.png", "XDG_CACHE_HOME=/dev/null");
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.errors, HasSubstr("XDG_CACHE_HOME"));
+}
+
+}  // namespace
