@@ -26,8 +26,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // The render thread's context finds the machine code of a warm-up draw in Mesa's disk cache, which a thread of Mesa's
-// fills soon after the draw. A program drawn with before that is compiled again, by the frame: seen in one of five,
-// none when 5 ms lay between. Builds shorter than `compiled` found everything in the cache.
+// fills some time after the draw. A program drawn with before that is compiled again, by the frame: seen in one of
+// five. Builds shorter than `compiled` found everything in the cache.
 constexpr std::chrono::milliseconds compiled(20);
 constexpr std::chrono::milliseconds cacheWriting(100);
 
