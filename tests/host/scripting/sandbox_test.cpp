@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Endless{"repBomb", "local s = string.rep('x', 1 << 40)"},
                     Endless{"concatBomb", "local s = 'x' while true do s = s .. s end"},
                     Endless{"tableBomb", "local t = {} for i = 1, 1e9 do t[i] = {} end"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& each) { return each.param.name; });
 
 TEST(Sandbox, NamesTheLineOfAnEndlessLoop) {
   ScriptEngine engine(small());
