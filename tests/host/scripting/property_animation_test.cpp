@@ -81,7 +81,7 @@ TEST_F(PropertyAnimationTest, BouncesUntilItIsStopped) {
   PropertyAnimation::Movement movement = to(1.0, 1.0);
   movement.bouncing = true;
   animation_.start({&opacity_}, movement);
-  for (const double expected : {0.75, 0.5, 0.75, 0.0}) {
+  for (const double expected : {0.75, 0.5, 0.25, 1.0}) {
     animation_.advance(0.75);
     EXPECT_NEAR(opacity_.get(), expected, 1e-12);
   }
