@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "host/api/script_library.h"
 #include "host/navigation/camera.h"
 #include "host/navigation/orbit_navigator.h"

@@ -41,15 +41,15 @@ struct SessionRecording {
 };
 
 /// Reads the content of a file. ASCII: blanks of any number, "\r\n", a missing last line end, lines that start with `#`
-/// and empty ones are tolerated; `time` lines of version 01.00 become a script that sets the same. Binary: `t` frames
-/// likewise. `where` names the file in errors.
+/// and empty ones are tolerated; `time` lines of version 01.00 become a script that sets the same. Binary files of the
+/// same versions but for `t` frames. `where` names the file in errors.
 /// Errors, with file and line (or byte): no such header or version, a damaged line (what was expected, what was found),
 /// timestamps that descend.
 [[nodiscard]] Result<SessionRecording> parseSessionRecording(std::string_view content, std::string_view where);
 [[nodiscard]] Result<SessionRecording> readSessionRecording(const std::filesystem::path& file);
 
-/// One entry as a line of version 03.00, ASCII, with its line end. Scripts become one line each: line ends to `;`,
-/// unless that would break a comment or a long string: those are written as several lines.
+/// One entry as a line of version 03.00, ASCII, with its line end. A script becomes one line, unless joining its lines
+/// could break a comment or a long string.
 [[nodiscard]] std::string formatEntry(const SessionRecording::Entry& entry);
 /// The header of version 03.00, ASCII.
 [[nodiscard]] std::string_view asciiHeader();
