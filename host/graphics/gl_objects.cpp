@@ -66,6 +66,19 @@ Texture Texture::array2D(GLenum format, int width, int height, int layers, int l
   return texture;
 }
 
+Texture Texture::view(const Texture& of, GLenum target, GLenum format, int firstLevel, int levels) {
+  GLint layers = 1;
+  glGetTextureParameteriv(of.id(), GL_TEXTURE_VIEW_NUM_LAYERS, &layers);
+  // A view needs a name without a shape, which glCreateTextures would give it.
+  GLuint id = 0;
+  glGenTextures(1, &id);
+  Texture texture(id);
+  glTextureView(id, target, of.id(), format, static_cast<GLuint>(firstLevel), static_cast<GLuint>(levels), 0,
+                static_cast<GLuint>(layers));
+  setPlainSampling(id);
+  return texture;
+}
+
 Texture Texture::multisample2D(GLenum format, int width, int height, int samples) {
   Texture texture(newTexture(GL_TEXTURE_2D_MULTISAMPLE));
   glTextureStorage2DMultisample(texture.id(), samples, format, width, height, GL_TRUE);

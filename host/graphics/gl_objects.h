@@ -81,6 +81,8 @@ class Texture : public Object<detail::deleteTexture> {
   Texture() = default;
   [[nodiscard]] static Texture image2D(GLenum format, int width, int height, int levels = 1);
   [[nodiscard]] static Texture array2D(GLenum format, int width, int height, int layers, int levels = 1);
+  /// Some levels, with all their layers, of a texture, which stays alive in the driver as long as its views do.
+  [[nodiscard]] static Texture view(const Texture& of, GLenum target, GLenum format, int firstLevel, int levels);
   [[nodiscard]] static Texture multisample2D(GLenum format, int width, int height, int samples);
 
  private:

@@ -36,8 +36,12 @@ Result<void> compileShader(GLuint shader, const ShaderSource& source, std::strin
   raw.resize(static_cast<std::size_t>(length));
   const std::string readable = source.readableLog(raw);
   log::debug("compiler's log:\n{}", readable);
-  return failure(fmt::format("the {} shader does not compile: {}", stage, firstMessage(readable)),
-                 source.firstPlace(raw));
+  std::string where = source.firstPlace(raw);
+  std::string message = firstMessage(readable);
+  if (message.starts_with(where + ": ")) {
+    message.erase(0, where.size() + 2);
+  }
+  return failure(fmt::format("the {} shader does not compile: {}", stage, message), std::move(where));
 }
 
 Result<void> linkProgram(GLuint program, const ProgramDescription& description) {

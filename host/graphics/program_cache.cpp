@@ -25,6 +25,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// The render thread's context finds the machine code of a warm-up draw in Mesa's disk cache, which a thread of Mesa's
+// fills soon after the draw. A program drawn with before that is compiled again, by the frame: seen in one of five,
+// none when 5 ms lay between. Builds shorter than `compiled` found everything in the cache.
+constexpr std::chrono::milliseconds compiled(20);
+constexpr std::chrono::milliseconds cacheWriting(100);
+
 /// Compiles, links and warms with the current context, which it leaves in the default state.
 Result<GLuint> build(const ProgramDescription& description, Statistics& statistics) {
   const Clock::time_point start = Clock::now();
@@ -54,11 +60,22 @@ struct ProgramHandle::Entry {
 
   std::string key;
   ProgramDescription description;  ///< the builder's, empty once built
-  /// Whoever builds writes the next two, then the state.
+  /// Whoever builds writes the next three, then the state.
   GLuint program = 0;
   Error error;
+  Clock::time_point usableFrom{};  ///< when the driver has kept the machine code
   std::atomic<State> state{State::Building};
-  std::uint64_t lastUse = 0;  ///< render thread only
+  // The render thread's.
+  std::uint64_t lastUse = 0;
+  bool settled = false;  ///< usableFrom has passed
+
+  [[nodiscard]] bool usable() {
+    if (state.load(std::memory_order_acquire) != State::Ready) {
+      return false;
+    }
+    settled = settled || Clock::now() >= usableFrom;
+    return settled;
+  }
 
   void finish(Result<GLuint> result) {
     description = {};
@@ -127,8 +144,15 @@ void ProgramCache::Implementation::run() {
     queue.pop_front();
     building = true;
     lock.unlock();
-    entry->finish(current ? build(entry->description, statistics)
-                          : Result<GLuint>(tl::make_unexpected(current.error())));
+    const bool warms = entry->description.warmUp != nullptr;
+    const Clock::time_point start = Clock::now();
+    auto program =
+        current ? build(entry->description, statistics) : Result<GLuint>(tl::make_unexpected(current.error()));
+    const Clock::time_point end = Clock::now();
+    if (warms && end - start > compiled) {
+      entry->usableFrom = end + cacheWriting;
+    }
+    entry->finish(std::move(program));
     lock.lock();
     building = false;
     changed.notify_all();
@@ -236,7 +260,7 @@ Result<GLuint> ProgramCache::get(const ProgramHandle& handle) const {
 }
 
 GLuint ProgramCache::ready(const ProgramHandle& handle) const {
-  if (!handle || handle.entry_->state.load(std::memory_order_acquire) != ProgramHandle::Entry::State::Ready) {
+  if (!handle || !handle.entry_->usable()) {
     return 0;
   }
   handle.entry_->lastUse = ++implementation_->uses;
@@ -247,10 +271,11 @@ Result<ProgramHandle> ProgramCache::buildNow(ProgramDescription description) {
   Implementation& self = *implementation_;
   if (ProgramHandle known = find(description.key)) {
     ++self.statistics.programs.cached;
-    if (known.entry_->state.load(std::memory_order_acquire) == ProgramHandle::Entry::State::Building) {
-      waitAll();
-    }
     auto program = get(known);
+    if (program && *program == 0) {
+      waitAll();
+      program = get(known);
+    }
     return program ? Result<ProgramHandle>(std::move(known)) : tl::make_unexpected(std::move(program.error()));
   }
   self.noteWaiting();
@@ -273,6 +298,13 @@ void ProgramCache::waitAll() {
   if (!idle()) {
     self.noteWaiting();
     self.changed.wait(lock, idle);
+  }
+  lock.unlock();
+  for (const auto& [key, entry] : self.entries) {
+    if (entry->state.load(std::memory_order_acquire) == ProgramHandle::Entry::State::Ready && !entry->usable()) {
+      self.noteWaiting();
+      std::this_thread::sleep_until(entry->usableFrom);
+    }
   }
 }
 

@@ -35,9 +35,10 @@ class ProgramHandle {
 /// Builds programs on a warm-up thread with a second, shared context, and keeps them.
 ///
 /// A program is ready only after its warm-up draw (DESIGN decision 8; measured on llvmpipe: linking takes 15 ms, the
-/// first draw up to a second), so that a frame that uses it never waits. Programs that somebody holds a handle to stay;
-/// of the others the `capacity` most recently used stay. A request whose handles are all gone before its turn is
-/// dropped. Requests are built in their order.
+/// first draw up to a second) and, where that compiled something, a tenth of a second in which Mesa keeps the machine
+/// code on disk for the first context, so that a frame that uses it never waits. Programs that somebody holds a handle
+/// to stay; of the others the `capacity` most recently used stay. A request whose handles are all gone before its turn
+/// is dropped. Requests are built in their order.
 ///
 /// All functions are for the render thread, with the first context current. It must die before that context does.
 class ProgramCache {
@@ -72,7 +73,7 @@ class ProgramCache {
   /// Waits until nothing is being built: for tests and for pictures that are written. Counts as buildNow does.
   void waitAll();
 
-  /// How many requests are not built yet.
+  /// How many requests are not built yet; ask ready() whether one is to be drawn with.
   [[nodiscard]] std::size_t pending() const;
   /// How many programs it knows: ready, failed or being built.
   [[nodiscard]] std::size_t size() const;

@@ -2,7 +2,8 @@
 
 namespace meridian::globebrowsing {
 
-GlobeServices::GlobeServices(PropertyOwner& owner, Statistics& statistics) : streamer_(workers_, statistics) {
+GlobeServices::GlobeServices(PropertyOwner& owner, Statistics& statistics)
+    : statistics_(statistics), streamer_(workers_, statistics) {
   owner.addProperty(tileCacheSize);
   owner.addProperty(texturePoolSize);
   owner.addProperty(compositionBudget);
@@ -15,6 +16,7 @@ void GlobeServices::enterFrame(std::uint64_t frame) {
   if (frame != frame_) {
     streamer_.endFrame();
     streamer_.beginFrame();
+    statistics_.chunks = {};
     frame_ = frame;
   }
 }

@@ -21,7 +21,7 @@ class GlobeServices {
   [[nodiscard]] TileStreamer& streamer() { return streamer_; }
 
   /// Every globe calls this first in its update: the first call of a frame ends the last frame of the streamer and
-  /// begins the next, so that what no globe asked for is cancelled.
+  /// begins the next, so that what no globe asked for is cancelled, and empties the chunk gauges, which globes add to.
   void enterFrame(std::uint64_t frame);
 
   IntProperty tileCacheSize{{"TileCacheSize", "Tile cache", "Of decoded tiles in memory, in MiB"}, 512, 16, 65536};
@@ -34,6 +34,7 @@ class GlobeServices {
       {"CompositionBudget", "Composition budget", "Of blending layers in a frame, in milliseconds"}, 2.0, {0.1, 100.0}};
 
  private:
+  Statistics& statistics_;
   WorkerPool workers_;
   TileStreamer streamer_;
   std::uint64_t frame_ = ~std::uint64_t{0};

@@ -51,14 +51,14 @@ glm::vec4 pixelTransform(const UnitSquareTransform& transform) {
 }
 
 std::string call(std::size_t layer, std::string_view sampling, std::string_view blend, std::string_view adjustment) {
-  return fmt::format("    result = composeLayer(result, {}, {}, {}, {});\n", layer, sampling, blend, adjustment);
+  return fmt::format("    result = composePart(result, {}, {}, {}, {});\n", layer, sampling, blend, adjustment);
 }
 
 std::string unrolled(const StructureKey& key) {
   std::string body;
   for (std::size_t i = 0; i < key.layers().size(); ++i) {
     const LayerStructure& layer = key.layers()[i];
-    body += call(i, fmt::format("sampling{}", name(layer.sampling)), fmt::format("blend{}", name(layer.blendMode)),
+    body += call(i, fmt::format("sampling{}", name(layer.sampling)), fmt::format("blendMode{}", name(layer.blendMode)),
                  fmt::format("adjustment{}", name(layer.adjustment)));
   }
   return body;
@@ -66,7 +66,7 @@ std::string unrolled(const StructureKey& key) {
 
 constexpr std::string_view loopBody =
     "    for (int i = 0; i < part.count; ++i) {\n"
-    "        result = composeLayer(result, i, layers[i].sampling, layers[i].blendMode, layers[i].adjustment);\n"
+    "        result = composePart(result, i, layers[i].sampling, layers[i].blendMode, layers[i].adjustment);\n"
     "    }\n";
 
 /// Draws once as compose() does, into textures of its own that are not powers of two either.
@@ -190,11 +190,10 @@ Result<void> Composer::requestPrograms() {
 
 Result<graphics::ProgramDescription> Composer::describe(std::string key, std::size_t layers, std::string body) const {
   const int count = std::max(1, static_cast<int>(layers));
-  const LayerFields& fields = layerFields();
   const graphics::Substitutions substitutions{
-      {"structs", glslStruct(fields, "LayerSettings")},
+      {"structs", glslStruct(layerFields(), "Layer")},
       {"constants", glslLayerConstants()},
-      {"layers", glslLayerBlock(fields, "LayerSettings", "LayerBlock", "layers", layerBinding, count)},
+      {"layers", glslLayerBlock({"Layer", "LayerBlock", "layers", layerBinding, count})},
       {"count", fmt::format("{}", count)},
       {"body", std::move(body)}};
   Result<graphics::ShaderSource> vertex = graphics_.templates().load("gpu/fill.vert");

@@ -75,7 +75,7 @@ struct RasterAccess::Resident {
 
 template <class Pixel>
 struct RasterAccess::Store {
-  explicit Store(std::size_t levels) : levels(levels) {}
+  explicit Store(std::size_t count) : levels(count) {}
   std::vector<Resident<Pixel>> levels;
   std::atomic<std::size_t> bytes{0};
 };

@@ -1,0 +1,103 @@
+#include <fstream>
+
+#include "raster_fixture.h"
+
+namespace meridian::globebrowsing {
+namespace {
+
+using namespace test;
+
+/// A folder of its own for files that must be on disk.
+class BadInput : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              ("bad-input-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
+    const std::filesystem::path path = folder_ / name;
+    std::ofstream(path, std::ios::binary) << text;
+    return path.string();
+  }
+  std::filesystem::path folder_;
+};
+
+void expectRefused(const RasterDescription& description, const std::string& what) {
+  testing::internal::CaptureStderr();
+  const auto source = RasterSource::open(description);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "GDAL's messages belong into the error";
+  ASSERT_FALSE(source) << description.path;
+  EXPECT_NE(source.error().what.find(what), std::string::npos) << source.error().message();
+  EXPECT_EQ(source.error().where, description.where.empty() ? description.path : description.where);
+}
+
+TEST_F(BadInput, IsRefusedByName) {
+  expectRefused({"", "earth.asset:7"}, "no raster is named");
+  expectRefused({(folder_ / "none.tif").string(), "earth.asset:7"}, "there is no file");
+  expectRefused({folder_.string()}, "is a folder");
+  expectRefused({write("text.tif", "this is no raster")}, "no raster that GDAL can read");
+  expectRefused({write("empty.tif", "")}, "no raster that GDAL can read");
+  expectRefused({"<VRTDataset rasterXSize=\"10\"", "inline"}, "no raster that GDAL can read");
+  expectRefused({"<VRTDataset rasterXSize=\"10\" rasterYSize=\"10\"/>", "inline"}, "no bands");
+  expectRefused({"WMS:", "inline"}, "no raster that GDAL can read");
+}
+
+TEST_F(BadInput, ComplexSamplesAreRefused) {
+  const MadeRaster raster({8, 8, northUp(0, 10, 1), GDT_CFloat32}, [](int, int, int) { return 1.0; });
+  expectRefused({raster.path()}, "complex samples");
+}
+
+TEST_F(BadInput, PlacesOutsideTheGlobeAreRefused) {
+  const MadeRaster metres({8, 8, {500000, 30, 0, 5000000, 0, -30}, GDT_Byte, 1, ""}, [](int, int, int) { return 1.0; });
+  expectRefused({metres.path()}, "outside the globe");
+  const MadeRaster flat({8, 8, {10, 0, 0, 20, 0, 0}, GDT_Byte}, [](int, int, int) { return 1.0; });
+  expectRefused({flat.path()}, "geotransform cannot be inverted");
+  RasterDescription backwards{flat.path()};
+  backwards.extentDegrees = {10, 0, -10, 10};
+  expectRefused(backwards, "the extent is empty");
+}
+
+TEST_F(BadInput, ACrsThatProjRejectsIsRefused) {
+  const std::string path = sharedData("imagery/mars/mola_clrshade_mercator_BAD_k0.tif");
+  MERIDIAN_NEEDS(path);
+  expectRefused({path}, "PROJ");
+}
+
+TEST_F(BadInput, ATruncatedRasterFailsTileByTile) {
+  const MadeRaster whole({600, 600, northUp(0, 60, 0.1), GDT_Float64},
+                         [](int, int column, int row) { return column * row; });
+  vsi_l_offset length = 0;
+  const GByte* bytes = VSIGetMemFileBuffer(whole.path().c_str(), &length, FALSE);
+  const std::string half(reinterpret_cast<const char*>(bytes), length / 2);
+  testing::internal::CaptureStderr();
+  const auto source = RasterSource::open({write("half.tif", half), "earth.asset:9"});
+  const GeodeticTiling tiling = earth();
+  if (source) {
+    for (int again = 0; again < 2; ++again) {
+      const auto pixels = resampleHeights(**source, tiling, tileAt(tiling, 10, 30, 3), heightLayout, {});
+      ASSERT_FALSE(pixels);
+      EXPECT_EQ(pixels.error().where, "earth.asset:9");
+      EXPECT_NE(pixels.error().what.find("cannot be read"), std::string::npos) << pixels.error().message();
+    }
+  } else {
+    EXPECT_EQ(source.error().where, "earth.asset:9");
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(BadInput, AnAbsurdSizeCostsNothing) {
+  // Two thousand million pixels a side, nearly all without data: opening and a fine tile are quick.
+  const std::string vrt =
+      "<VRTDataset rasterXSize=\"2000000000\" rasterYSize=\"1000000000\"><SRS>EPSG:4326</SRS>"
+      "<GeoTransform>-180,1.8e-7,0,90,0,-1.8e-7</GeoTransform><VRTRasterBand dataType=\"Byte\" "
+      "band=\"1\"/></VRTDataset>";
+  const auto source = RasterSource::open({vrt, "inline"});
+  ASSERT_TRUE(source) << source.error().message();
+  const GeodeticTiling tiling = earth();
+  EXPECT_TRUE(colours(**source, tiling, tileAt(tiling, 10, 30, 20)).anyOpaque);
+}
+
+}  // namespace
+}  // namespace meridian::globebrowsing
