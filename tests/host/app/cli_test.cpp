@@ -1,6 +1,4 @@
 // The program as a user runs it: arguments in, exit code, messages and files out.
-#include <sys/wait.h>
-
 #include <array>
 #include <csignal>
 #include <cstdio>
@@ -13,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/wait.h>
 
 #include "host/graphics/image.h"
 
@@ -193,9 +192,9 @@ TEST_F(CommandLine, SettingsAndScriptsReachTheScene) {
     openspace.printInfo("samples " .. openspace.propertyValue("RenderEngine.Antialiasing"))
     openspace.printInfo("time " .. openspace.time.UTC())
   )");
-  const Outcome outcome = run(
-      "empty.asset --headless --size 8x8 --frames 2 --time 2026-03-20T14:46:00 --set RenderEngine.Antialiasing=4 "
-      "--script check.lua --output picture.png");
+  const Outcome outcome =
+      run("empty.asset --headless --size 8x8 --frames 2 --time 2026-03-20T14:46:00 --set RenderEngine.Antialiasing=4 "
+          "--script check.lua --output picture.png");
   ASSERT_EQ(outcome.code, 0) << outcome.errors;
   EXPECT_THAT(outcome.errors, HasSubstr("samples 4"));
   EXPECT_THAT(outcome.errors, HasSubstr("2026-03-20T14:46:00"));
@@ -204,9 +203,9 @@ TEST_F(CommandLine, SettingsAndScriptsReachTheScene) {
 TEST_F(CommandLine, WhatTheSceneRefusesFails) {
   emptyScene();
   write("bad.lua", "error('oops')\n");
-  for (const char* arguments : {"--set No.Such.Property=1", "--set RenderEngine.Antialiasing=99", "--anchor Nowhere",
-                                "--camera 0,0,1000", "--script missing.lua", "--script bad.lua", "--play missing.osrec",
-                                "--record missing/folder/r.osrectxt"}) {
+  for (const char* arguments :
+       {"--set No.Such.Property=1", "--set RenderEngine.Antialiasing=99", "--anchor Nowhere", "--camera 0,0,1000",
+        "--script missing.lua", "--script bad.lua", "--play missing.osrec", "--record missing/folder/r.osrectxt"}) {
     const Outcome outcome = run(std::string("empty.asset --headless --size 8x8 ") + arguments);
     EXPECT_EQ(outcome.code, 1) << arguments;
     EXPECT_NE(outcome.errors, "") << arguments;
