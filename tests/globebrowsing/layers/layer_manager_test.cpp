@@ -67,7 +67,7 @@ TEST_F(LayerManagerTest, AMovedLayerTakesItsNeighboursZ) {
   EXPECT_THAT(order(), ElementsAre("c", "b", "a"));
   ASSERT_TRUE(manager_.moveLayer("ColorLayers", "c", 99));
   EXPECT_THAT(order(), ElementsAre("b", "a", "c"));
-  EXPECT_TRUE(std::is_sorted(depths().begin(), depths().end()));
+  EXPECT_THAT(depths(), ElementsAre(2, 2, 2));
   EXPECT_FALSE(manager_.moveLayer("ColorLayers", "x", 0));
   EXPECT_FALSE(manager_.moveLayer("Colours", "a", 0));
 }
