@@ -159,7 +159,8 @@ std::string placeFrom(lua_State* lua, int level) {
     lua_getinfo(lua, "Sl", &frame);
     // Our own Lua code is named with '='.
     if (frame.currentline > 0 && frame.source[0] != '=') {
-      return std::string(frame.source[0] == '@' ? frame.source + 1 : frame.short_src) + ':' + std::to_string(frame.currentline);
+      return std::string(frame.source[0] == '@' ? frame.source + 1 : frame.short_src) + ':' +
+             std::to_string(frame.currentline);
     }
   }
   return {};
