@@ -1,8 +1,8 @@
 #include "host/api/property.h"
 
-#include <gtest/gtest.h>
-
 #include <memory>
+
+#include <gtest/gtest.h>
 
 #include "host/api/property_owner.h"
 

@@ -1,15 +1,15 @@
 #include "host/api/time.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <string>
+
+#include <gtest/gtest.h>
 
 namespace meridian {
 namespace {
 
-/// TDB seconds past J2000 of calendar instants. TT is UTC + leap seconds + 32.184 s by definition; TDB differs from it by
-/// less than 1.7 ms. Leap seconds are those of IERS Bulletin C.
+/// TDB seconds past J2000 of calendar instants. TT is UTC + leap seconds + 32.184 s by definition; TDB differs from it
+/// by less than 1.7 ms. Leap seconds are those of IERS Bulletin C.
 TEST(Time, KnowsTheLeapSeconds) {
   const struct {
     const char* utc;
@@ -36,8 +36,8 @@ TEST(Time, CountsTheLeapSecondItself) {
 }
 
 TEST(Time, WritesWhatItReads) {
-  for (const char* text : {"2026-11-22T21:17:05.250", "1969-07-20T20:17:40.000", "2100-02-28T23:59:59.999",
-                           "2000-02-29T00:00:00.000"}) {
+  for (const char* text :
+       {"2026-11-22T21:17:05.250", "1969-07-20T20:17:40.000", "2100-02-28T23:59:59.999", "2000-02-29T00:00:00.000"}) {
     EXPECT_EQ(Time::fromUtc(text)->utc(), text);
   }
   EXPECT_EQ(Time::fromUtc("2026-11-22 21:17Z")->utc(), "2026-11-22T21:17:00.000");

@@ -1,8 +1,8 @@
 #include "host/api/value.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 namespace meridian {
 namespace {

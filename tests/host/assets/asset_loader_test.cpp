@@ -1,8 +1,8 @@
 #include "host/assets/asset_loader.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+
+#include <gtest/gtest.h>
 
 #include "host/assets/validate.h"
 #include "temporary_folder.h"
@@ -69,8 +69,9 @@ class AssetLoaderTest : public testing::Test {
 };
 
 TEST_F(AssetLoaderTest, LoadsADiamondOnceAndInitialisesChildrenFirst) {
-  const std::string hooks = "asset.onInitialize(function() openspace.note('NAME') end)\n"
-                            "asset.onDeinitialize(function() openspace.note('-NAME') end)\n";
+  const std::string hooks =
+      "asset.onInitialize(function() openspace.note('NAME') end)\n"
+      "asset.onDeinitialize(function() openspace.note('-NAME') end)\n";
   const auto body = [&](std::string name, const std::string& before) {
     std::string text = before + "openspace.note('run' .. 'NAME')\n" + hooks;
     for (std::size_t i; (i = text.find("NAME")) != std::string::npos;) {
@@ -106,20 +107,23 @@ TEST_F(AssetLoaderTest, KeepsWhatAnotherRootNeeds) {
 }
 
 TEST_F(AssetLoaderTest, RunsSeveralOnDeinitializeInReverse) {
-  folder_.write("a.asset", "asset.onDeinitialize(function() openspace.note('first') end)\n"
-                           "asset.onDeinitialize(function() openspace.note('second') end)");
+  folder_.write("a.asset",
+                "asset.onDeinitialize(function() openspace.note('first') end)\n"
+                "asset.onDeinitialize(function() openspace.note('second') end)");
   ASSERT_TRUE(loader_.add("a"));
   loader_.removeAll();
   EXPECT_EQ(notes_, "second first ");
 }
 
 TEST_F(AssetLoaderTest, ExportsValuesTablesAndFunctions) {
-  folder_.write("lib.asset", "local Earth = { Identifier = 'Earth', Radius = 6 }\nasset.export(Earth)\n"
-                             "asset.export('twice', function(x) return 2 * x end)\n"
-                             "asset.export('folder', function() return asset.directory end)");
-  folder_.write("sub/user.asset", "local lib = asset.require('lib')\n"
-                                  "openspace.note(lib.Earth.Radius .. '/' .. lib.twice(4))\n"
-                                  "assert(lib.folder() ~= asset.directory and asset.require('lib') == lib)");
+  folder_.write("lib.asset",
+                "local Earth = { Identifier = 'Earth', Radius = 6 }\nasset.export(Earth)\n"
+                "asset.export('twice', function(x) return 2 * x end)\n"
+                "asset.export('folder', function() return asset.directory end)");
+  folder_.write("sub/user.asset",
+                "local lib = asset.require('lib')\n"
+                "openspace.note(lib.Earth.Radius .. '/' .. lib.twice(4))\n"
+                "assert(lib.folder() ~= asset.directory and asset.require('lib') == lib)");
   const Result<void> result = loader_.add("sub/user");
   ASSERT_TRUE(result) << result.error().message();
   EXPECT_EQ(notes_, "6/8 ");
@@ -128,8 +132,9 @@ TEST_F(AssetLoaderTest, ExportsValuesTablesAndFunctions) {
 }
 
 TEST_F(AssetLoaderTest, GivesEachAssetItsOwnAssetTableAndSharesTheOtherGlobals) {
-  folder_.write("a.asset", "asset.require('./b')\nshared = shared + 1\nasset.onInitialize(function()\n"
-                           "openspace.note(asset.filePath:match('[^/]*$') .. shared) end)");
+  folder_.write("a.asset",
+                "asset.require('./b')\nshared = shared + 1\nasset.onInitialize(function()\n"
+                "openspace.note(asset.filePath:match('[^/]*$') .. shared) end)");
   folder_.write("b.asset", "shared = 1");
   ASSERT_TRUE(loader_.add("a"));
   EXPECT_EQ(notes_, "a.asset2 ");
@@ -194,12 +199,13 @@ TEST_F(AssetLoaderTest, NamesFileAndLineOfEveryError) {
 }
 
 TEST_F(AssetLoaderTest, ResolvesResources) {
-  folder_.write("x/a.asset", "openspace.note(asset.resource('map.tif')) openspace.note(asset.resource())\n"
-                             "openspace.note(asset.localResource('../y/map.tif'))\n"
-                             "openspace.note(asset.resource({ Type = 'HttpSynchronization', Identifier = 'maps', "
-                             "Version = 2 }))\n"
-                             "openspace.note(asset.syncedResource({ Type = 'UrlSynchronization', Identifier = 'one', "
-                             "Url = 'http://x/y' }))");
+  folder_.write("x/a.asset",
+                "openspace.note(asset.resource('map.tif')) openspace.note(asset.resource())\n"
+                "openspace.note(asset.localResource('../y/map.tif'))\n"
+                "openspace.note(asset.resource({ Type = 'HttpSynchronization', Identifier = 'maps', "
+                "Version = 2 }))\n"
+                "openspace.note(asset.syncedResource({ Type = 'UrlSynchronization', Identifier = 'one', "
+                "Url = 'http://x/y' }))");
   ASSERT_TRUE(loader_.add("x/a"));
   const std::string root = folder_.path().string();
   EXPECT_EQ(notes_, root + "/x/map.tif " + root + "/x " + root + "/y/map.tif " + root + "/sync/http/maps/2/ " + root +
@@ -207,9 +213,10 @@ TEST_F(AssetLoaderTest, ResolvesResources) {
 }
 
 TEST_F(AssetLoaderTest, TellsTheSceneWhereANodeComesFrom) {
-  folder_.write("x/a.asset", "asset.meta = { Name = 'The A' }\nassert(asset.exists('./a') and not asset.exists('b'))\n"
-                             "asset.onInitialize(function()\nopenspace.addSceneGraphNode({ Identifier = 'A' })\nend)\n"
-                             "asset.onDeinitialize(function() openspace.removeSceneGraphNode({Identifier = 'A'}) end)");
+  folder_.write("x/a.asset",
+                "asset.meta = { Name = 'The A' }\nassert(asset.exists('./a') and not asset.exists('b'))\n"
+                "asset.onInitialize(function()\nopenspace.addSceneGraphNode({ Identifier = 'A' })\nend)\n"
+                "asset.onDeinitialize(function() openspace.removeSceneGraphNode({Identifier = 'A'}) end)");
   ASSERT_TRUE(loader_.add((folder_.path() / "x/a.asset").string()));
   EXPECT_EQ(target_.places, std::vector<std::string>{at("x/a.asset", 4)});
   EXPECT_EQ(target_.folders, std::vector<std::string>{(folder_.path() / "x").string()});
@@ -229,9 +236,10 @@ TEST_F(AssetLoaderTest, PassesEnabledOn) {
 TEST_F(AssetLoaderTest, ScriptsAddAndRemoveAssets) {
   folder_.write("a.asset", "openspace.note('a')");
   folder_.write("b.asset", "openspace.asset.add('a')");
-  ASSERT_TRUE(engine_.run("openspace.asset.add('a') assert(openspace.asset.isLoaded('a')) openspace.asset.remove('a') "
-                          "assert(#openspace.asset.allAssets() == 0)",
-                          "test"));
+  ASSERT_TRUE(
+      engine_.run("openspace.asset.add('a') assert(openspace.asset.isLoaded('a')) openspace.asset.remove('a') "
+                  "assert(#openspace.asset.allAssets() == 0)",
+                  "test"));
   EXPECT_EQ(errorOf("b").where, at("b.asset", 1));
 }
 

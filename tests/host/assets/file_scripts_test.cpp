@@ -90,9 +90,10 @@ TEST_F(FileScriptsTest, StopsInFoldersNestedTooDeeply) {
 }
 
 TEST_F(FileScriptsTest, WritesBelowTheCacheAndNamesTokens) {
-  ASSERT_TRUE(engine_.run("openspace.writeFile('${CACHE}/new/file.txt', 'x') openspace.setPathToken('${SUB}', "
-                          "'${ASSETS}/sub') assert(openspace.readFile('${SUB}/b.txt') == 'beta')",
-                          "test"));
+  ASSERT_TRUE(
+      engine_.run("openspace.writeFile('${CACHE}/new/file.txt', 'x') openspace.setPathToken('${SUB}', "
+                  "'${ASSETS}/sub') assert(openspace.readFile('${SUB}/b.txt') == 'beta')",
+                  "test"));
   EXPECT_EQ(value("openspace.readFile('${CACHE}/new/file.txt')"), Value("x"));
 }
 

@@ -1,8 +1,8 @@
 #include "host/scripting/clock.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "host/scripting/frame_timer.h"
 #include "host/scripting/script_engine.h"
@@ -116,9 +116,9 @@ TEST(TimeScripts, WorkOnTheClock) {
       "assert(t.secondsPerDay() == 86400 and t.currentApplicationTime() == 7)",
       "test");
   EXPECT_TRUE(result) << result.error().message();
-  for (const char* text : {"openspace.time.setTime('yesterday')", "openspace.time.setTime(0/0)",
-                           "openspace.time.setPause(1)", "openspace.time.setDeltaTime('x')",
-                           "openspace.time.setDeltaTimeSteps({})"}) {
+  for (const char* text :
+       {"openspace.time.setTime('yesterday')", "openspace.time.setTime(0/0)", "openspace.time.setPause(1)",
+        "openspace.time.setDeltaTime('x')", "openspace.time.setDeltaTimeSteps({})"}) {
     EXPECT_FALSE(engine.run(text, "test")) << text;
   }
 }

@@ -1,8 +1,8 @@
 #include "host/scripting/property_animation.h"
 
-#include <gtest/gtest.h>
-
 #include <optional>
+
+#include <gtest/gtest.h>
 
 #include "host/api/property.h"
 #include "host/api/property_owner.h"
@@ -13,8 +13,8 @@ namespace {
 class PropertyAnimationTest : public testing::Test {
  protected:
   PropertyAnimationTest() {
-    for (Property* property : {static_cast<Property*>(&opacity_), static_cast<Property*>(&count_),
-                               static_cast<Property*>(&offset_)}) {
+    for (Property* property :
+         {static_cast<Property*>(&opacity_), static_cast<Property*>(&count_), static_cast<Property*>(&offset_)}) {
       root_.addProperty(*property);
     }
   }

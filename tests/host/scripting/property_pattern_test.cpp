@@ -93,8 +93,9 @@ TEST_F(PropertyPatternTest, MatchesWhatTheDocumentationMeans) {
 }
 
 TEST_F(PropertyPatternTest, RefusesWhatMeansNothing) {
-  for (const char* pattern : {"", "*", "**", "a*b*c", "{planet.Opacity", "{}.Opacity", "{planet}", "{planet}.",
-                              "{planet}Opacity", "{a&b&c}.Opacity", "{a&b|c}.Opacity", "{a&}.Opacity", "{&b}.Opacity"}) {
+  for (const char* pattern :
+       {"", "*", "**", "a*b*c", "{planet.Opacity", "{}.Opacity", "{planet}", "{planet}.", "{planet}Opacity",
+        "{a&b&c}.Opacity", "{a&b|c}.Opacity", "{a&}.Opacity", "{&b}.Opacity"}) {
     EXPECT_EQ(matches(pattern), "error") << pattern;
   }
 }
