@@ -289,7 +289,9 @@ TEST(ShippedFlight, GoesFromSpaceLowAlongTheHimalayaAndUpAgain) {
     EXPECT_EQ(camera.node, "Earth");
     EXPECT_NEAR(camera.simulationTime - start, camera.timestamp, 2e-3);
     poses.push_back(navigation::geodeticFromPose(ground, {camera.position, camera.rotation}));
-    EXPECT_NEAR(poses.back().roll, 0.0, 1e-6);
+    if (poses.back().pitch > -85 * degree) {  // straight down the file's nine digits leave no heading or roll
+      EXPECT_NEAR(poses.back().roll, 0.0, 1e-6);
+    }
     if (poses.back().position.height < lowest) {
       lowest = poses.back().position.height;
       lowestTime = camera.timestamp;
