@@ -268,12 +268,14 @@ ExitCode show(Application& application, const Options& options, const std::vecto
 }  // namespace
 
 ExitCode runProgram(Options options, std::vector<std::unique_ptr<Module>> modules) {
-  log::setLevel(options.logLevel);
+  // One line is enough: the engine would also warn of a word that is no value.
+  log::setLevel(log::Level::Error);
   const auto settings = parseSettings(options.settings);
   if (!settings) {
     log::error("{}", settings.error().message());
     return ExitCode::WrongUsage;
   }
+  log::setLevel(options.logLevel);
   if (options.output) {
     if (const auto kind = FrameWriter::kindOf(*options.output); !kind) {
       log::error("--output: {}", kind.error().message());

@@ -124,8 +124,12 @@ void SceneRenderer::drawItems(const FrameContext& frame) {
 
 void SceneRenderer::takeGpuTime() {
   // Without waiting for the fence this is the time of a frame a little while ago.
+  const std::chrono::duration<double, std::milli> age = std::chrono::steady_clock::now() - created_;
   while (const auto milliseconds = timer_.take()) {
-    statistics_.frame.gpu = *milliseconds;
+    // llvmpipe's first span begins when the machine was started.
+    if (*milliseconds <= age.count()) {
+      statistics_.frame.gpu = *milliseconds;
+    }
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -91,6 +92,7 @@ class SceneRenderer {
   std::size_t nodesSeen_ = 0;
   unsigned structureSeen_ = 0;
   int removalKey_;
+  std::chrono::steady_clock::time_point created_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace meridian::app

@@ -1,5 +1,6 @@
 #include "host/app/frame_writer.h"
 
+#include <array>
 #include <fstream>
 #include <string>
 
@@ -19,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
+constexpr std::array<std::uint8_t, 3> reds{20, 120, 220};
 constexpr glm::ivec2 size(65, 33);  // odd, as windows can be
 
 /// One colour all over, but for the left column, which is white.
@@ -41,7 +43,7 @@ class FrameWriterTest : public ::testing::Test {
   void writeThree(const fs::path& path) {
     auto writer = FrameWriter::open(path, size, 25.0);
     ASSERT_TRUE(writer) << writer.error().message();
-    for (const std::uint8_t red : {20, 120, 220}) {
+    for (const std::uint8_t red : reds) {
       const auto written = (*writer)->write(picture(red, 60, 100));
       ASSERT_TRUE(written) << written.error().message();
     }
@@ -64,7 +66,7 @@ TEST_F(FrameWriterTest, PngGetsTheLastPicture) {
 TEST_F(FrameWriterTest, FolderGetsEveryPictureInOrder) {
   writeThree(in("frames"));
   int index = 0;
-  for (const std::uint8_t red : {20, 120, 220}) {
+  for (const std::uint8_t red : reds) {
     const auto image = graphics::readPng(in("frames") / ("frame_00000" + std::to_string(index++) + ".png"));
     ASSERT_TRUE(image) << image.error().message();
     EXPECT_EQ(image->pixels, picture(red, 60, 100).pixels);
@@ -164,7 +166,7 @@ TEST_P(VideoTest, HoldsEveryPictureAtItsRate) {
 }
 
 INSTANTIATE_TEST_SUITE_P(FrameWriter, VideoTest, ::testing::Values("a.mp4", "a.mkv", "a.mov", "a.webm"),
-                         [](const auto& info) { return std::string(info.param).substr(2); });
+                         [](const auto& instance) { return std::string(instance.param).substr(2); });
 
 TEST_F(FrameWriterTest, AFullDiskIsReportedForAVideo) {
   fs::create_symlink("/dev/full", in("full.mkv"));

@@ -172,7 +172,7 @@ const WrongCase wrongCases[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(Options, WrongOptions, ::testing::ValuesIn(wrongCases),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(Options, HelpNamesEveryOption) {
   const Parsed parsed = parse({"--help"});
