@@ -7,9 +7,15 @@ namespace {
 
 using namespace test;
 
+/// Removed when the program ends.
+struct TemporaryFile {
+  std::string path;
+  ~TemporaryFile() { std::filesystem::remove(path); }
+};
+
 /// A tiled RGB TIFF of 16384 x 8192 pixels with overviews, on disk.
 const std::string& tiledTiff() {
-  static const std::string path = [] {
+  static const TemporaryFile made{[] {
     GDALAllRegister();
     std::string file = (std::filesystem::temp_directory_path() / "meridian-bench-resample.tif").string();
     const GDALDatasetUniquePtr small(
@@ -41,8 +47,8 @@ const std::string& tiledTiff() {
       std::abort();
     }
     return file;
-  }();
-  return path;
+  }()};
+  return made.path;
 }
 
 template <class Resample>
