@@ -2,6 +2,7 @@
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
 #include <imgui.h>
 
 #include "host/graphics/default_state.h"
@@ -47,6 +48,7 @@ class ImGuiInterface final : public UserInterface {
     ImGui::NewFrame();
     buildPanels();
     ImGui::Render();
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     graphics::applyDefaultState();
   }

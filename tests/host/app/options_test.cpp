@@ -76,7 +76,7 @@ TEST(Options, TakesTheWholeCommandLine) {
   EXPECT_EQ(options.settings[0].value, "false");
   EXPECT_EQ(options.settings[1].value, "{1, 2}");
   EXPECT_EQ(options.script, "run.lua");
-  EXPECT_EQ(options.play, "flight.osrectxt");
+  EXPECT_EQ(options.record, "flight.osrectxt");
   EXPECT_EQ(options.frames, 12U);
   EXPECT_EQ(options.fps, 29.97);
   EXPECT_EQ(options.settleSeconds, 2.5);
