@@ -24,11 +24,11 @@ using BodyId = int;
 /// Where `target` is as seen from `observer`: metres along the ICRF axes, geometric (no light time, no aberration).
 /// Both must be known; asserts otherwise. Zero when they are the same.
 ///
-/// Series: Earth and Sun eraEpv00 (barycentric to 5 km rms over 1900-2100), planets eraPlan94 (1000-3000; errors of
-/// 1 to 20 arcseconds as seen from the Sun within 1800-2050), Moon eraMoon98 (10 arcseconds, 0.5 arcseconds times the
-/// distance's 7 km rms). Beyond those years the answers grow worse slowly but stay finite. The outer planets' centres
-/// are taken to be at their barycentres (Jupiter 200 km, Neptune 75 km off at most). Relations go through the nearest
-/// common centre, so that Moon and Earth are exact to each other.
+/// Series: Earth and Sun eraEpv00 (barycentric to 5 km rms over 1900-2100), planets eraPlan94 (1000-3000;
+/// at most 6 arcseconds for Mercury to 87 for Saturn as seen from the Sun within 1800-2050), Moon eraMoon98 (3
+/// arcseconds and 6 km rms over 1950-2100, 32 km at worst). Beyond those years the answers grow worse slowly but stay
+/// finite. The outer planets' centres are taken to be at their barycentres (Jupiter 200 km, Neptune 75 km off at most).
+/// Relations go through the nearest common centre, so that Moon and Earth are exact to each other.
 [[nodiscard]] glm::dvec3 relativePosition(BodyId target, BodyId observer, const Time& time);
 
 }  // namespace meridian::ephemeris

@@ -23,7 +23,8 @@ struct ProgramDescription {
   /// Called on the warm-up thread with the second context current, the program in use and the default state set. It
   /// makes all that it needs (targets, textures without contents, vertex arrays) and deletes it again; it must not
   /// touch objects of the first context and must not upload texels (llvmpipe crashes): glClearTexImage counts as
-  /// uploading, glClearNamedFramebuffer does not. It may be called more than once. Empty: nothing to warm.
+  /// uploading, glClearNamedFramebuffer does not. It is called again, on another context,
+  /// when it had something compiled. Empty: nothing to warm.
   std::function<void(GLuint program)> warmUp;
 };
 

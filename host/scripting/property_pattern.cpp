@@ -58,7 +58,8 @@ Result<PropertyPattern> PropertyPattern::parse(std::string_view text) {
       return bad("a dot and the rest of the name must follow the tag group");
     }
   }
-  if (text.find_first_not_of(".*") == std::string_view::npos) {
+  const bool allOfTagged = pattern.operator_ != Operator::None && text == ".*";
+  if (text.find_first_not_of(".*") == std::string_view::npos && !allOfTagged) {
     return bad("it names nothing");
   }
   const std::size_t star = text.find('*');

@@ -97,6 +97,18 @@ int safeMove(lua_State* lua) {
   return callOriginal(lua);
 }
 
+/// Lua's own xpcall calls the handler inside the hook that raises, where no hook counts; this one calls it afterwards.
+constexpr const char* safeXpcall = R"(
+local pcall, pack, unpack = pcall, table.pack, table.unpack
+function xpcall(body, handler, ...)
+  local results = pack(pcall(body, ...))
+  if results[1] then
+    return unpack(results, 1, results.n)
+  end
+  return false, handler(results[2])
+end
+)";
+
 void wrap(lua_State* lua, const char* library, const char* name, lua_CFunction replacement) {
   lua_getglobal(lua, library);
   lua_getfield(lua, -1, name);
@@ -145,9 +157,10 @@ std::string placeFrom(lua_State* lua, int level) {
   lua_Debug frame{};
   for (; lua_getstack(lua, level, &frame) != 0; ++level) {
     lua_getinfo(lua, "Sl", &frame);
-    if (frame.currentline > 0) {
-      const bool named = frame.source[0] == '@' || frame.source[0] == '=';
-      return std::string(named ? frame.source + 1 : frame.short_src) + ':' + std::to_string(frame.currentline);
+    // Our own Lua code is named with '='.
+    if (frame.currentline > 0 && frame.source[0] != '=') {
+      return std::string(frame.source[0] == '@' ? frame.source + 1 : frame.short_src) + ':' +
+             std::to_string(frame.currentline);
     }
   }
   return {};
@@ -181,6 +194,8 @@ void openSandbox(lua_State* lua) {
     wrap(lua, LUA_TABLIBNAME, name, safeTableFunction);
   }
   wrap(lua, LUA_TABLIBNAME, "move", safeMove);
+  luaL_loadbuffer(lua, safeXpcall, std::char_traits<char>::length(safeXpcall), "=xpcall");
+  lua_call(lua, 0, 0);
 
   // Lua keeps the opened libraries in its registry, out of reach of scripts.
   lua_pushglobaltable(lua);

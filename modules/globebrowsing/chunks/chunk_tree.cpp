@@ -32,10 +32,12 @@ constexpr int stopgapLevels = 3;
 constexpr double rootPriority = 3.0;
 constexpr double neededPriority = 1.0;
 
-bool isFinite(const SelectionView& view) {
+bool isUsable(const SelectionView& view) {
   constexpr double farthest = 1e30;
-  if (!(glm::length(view.cameraPosition) < farthest) || !(view.pixelsPerRadian > 0.0) ||
-      !std::isfinite(view.pixelsPerRadian)) {
+  constexpr double fewestPixels = 1e-6;
+  constexpr double mostPixels = 1e12;
+  if (!(glm::length(view.cameraPosition) < farthest) || !(view.pixelsPerRadian > fewestPixels) ||
+      !(view.pixelsPerRadian < mostPixels)) {
     return false;
   }
   for (int column = 0; column < 4; ++column) {
@@ -75,8 +77,8 @@ struct PreparedView {
 
 /// What all views together ask of a tile.
 struct Demand {
-  std::uint32_t views = 0;     ///< that see it
-  bool behindHorizon = false;  ///< of a view whose frustum has it
+  std::uint32_t views = 0;  ///< that see it
+  bool beside = false;      ///< some view would see it, looking elsewhere
   double distance = 0.0;
   double urgency = 0.0;
   double pixelsPerMetre = 0.0;
@@ -179,7 +181,7 @@ void ChunkTree::Implementation::prepare(std::span<const SelectionView> views) {
   viewCount_ = 0;
   for (std::size_t i = 0; i < std::min(views.size(), mostViews); ++i) {
     const SelectionView& view = views[i];
-    if (!isFinite(view)) {
+    if (!isUsable(view)) {
       continue;
     }
     PreparedView& prepared = views_[viewCount_++];
@@ -216,13 +218,13 @@ Demand ChunkTree::Implementation::demandOn(const ChunkNode& node) const {
   const OrientedBox& box = node.bounds.box;
   for (std::size_t i = 0; i < viewCount_; ++i) {
     const PreparedView& view = views_[i];
-    const bool hidden = view.horizon.hides(node.horizonCap);
-    if (!hidden && view.frustum.touches(box)) {
-      demand.views |= view.bit;
-    }
-    demand.behindHorizon = demand.behindHorizon || hidden;
-    if (hidden) {
+    if (view.horizon.hides(node.horizonCap)) {
       continue;
+    }
+    if (view.frustum.touches(box)) {
+      demand.views |= view.bit;
+    } else {
+      demand.beside = true;
     }
     // A tile that a view turns its back on still counts by its distance, so that views in all directions agree.
     TileMeasure measure;
@@ -257,7 +259,8 @@ bool ChunkTree::Implementation::mustSplit(const ChunkNode& node, const Demand& d
 
 double ChunkTree::Implementation::priority(const Demand& demand, double base) const {
   const double worth = demand.urgency * (0.25 + 0.75 * demand.centred);
-  return base + worth / (1.0 + worth);
+  constexpr double beyondCompare = 1e15;
+  return base + (worth < beyondCompare ? worth / (1.0 + worth) : 1.0);
 }
 
 void ChunkTree::Implementation::want(const TileIndex& index, double priority) {
@@ -268,7 +271,7 @@ void ChunkTree::Implementation::want(const TileIndex& index, double priority) {
 }
 
 void ChunkTree::Implementation::noteCulled(const ChunkNode& node, const Demand& demand) {
-  if (demand.behindHorizon) {
+  if (!demand.beside) {
     ++figures_.culledHorizon;
     return;
   }
@@ -304,7 +307,8 @@ bool ChunkTree::Implementation::visitTarget(NodeNumber number, const Demand& dem
   ++figures_.missing;
   // Zooming out: what was drawn stays until this one is complete. Without a surface of its own, any finer one will do.
   const bool cannotDraw = state == TileResidency::State::Nothing;
-  if ((node.belowFrame + 1 == frame_ || cannotDraw) && coverByFiner(number, !cannotDraw)) {
+  const bool drewFiner = node.belowFrame + 1 == frame_;
+  if ((drewFiner && coverByFiner(number, true)) || (cannotDraw && coverByFiner(number, false))) {
     provisional_ = true;
     return true;
   }
@@ -318,6 +322,7 @@ bool ChunkTree::Implementation::visitTarget(NodeNumber number, const Demand& dem
 bool ChunkTree::Implementation::visitChildren(NodeNumber number, const Demand& demand) {
   split(number);
   const std::size_t before = selected_.size();
+  const std::uint32_t kickedBefore = figures_.kicked;
   bool covered = true;
   for (int i = 0; i < pool_[number].childCount; ++i) {
     covered = visit(pool_[number].children[static_cast<std::size_t>(i)]) && covered;
@@ -335,7 +340,7 @@ bool ChunkTree::Implementation::visitChildren(NodeNumber number, const Demand& d
   }
   truncate(before);
   draw(number, demand);
-  ++figures_.kicked;
+  figures_.kicked = kickedBefore + 1;  // whatever stood in for something below is not drawn either
   provisional_ = true;
   return true;
 }

@@ -13,7 +13,23 @@ namespace meridian::globebrowsing {
 /// the settings ask and as what is in memory allows. A pure algorithm: it knows tiles by index only and asks a
 /// TileResidency for the rest.
 ///
-/// A steady selection (nothing new is visited) allocates nothing. One thread at a time.
+/// A tile splits while any view asks for it, wherever the view looks: while the evaluator finds it too coarse (and, for
+/// evaluators limited by data, finer colours exist), while its geometric error at 32 segments exceeds
+/// settings.maximumErrorPixels, or while its edge times 2^-23 (the precision of a float along it) exceeds 0.05 pixel,
+/// all at its nearest point. What remains are the target chunks; each is drawn with the fewest segments that keep the
+/// error.
+///
+/// Targets and roots are wanted. While a target has no surface, the nearest ancestor that has one is drawn in place of
+/// everything below it (a kick); ancestors are not loaded for that, except every third level, as something to start
+/// with. A target with a surface is drawn at once, its colours coming from an ancestor until its own are there. While a
+/// target is not complete but finer chunks were drawn in the last frame, those stay (zooming out). So what is seen is
+/// covered exactly once, as long as the roots can be drawn.
+///
+/// What all views cull, by frustum or horizon, is neither drawn nor descended into. What only the frustum culls is
+/// kept, and with settings.prefetch also wanted, after everything needed now.
+///
+/// A steady selection (nothing new is visited) allocates nothing. Nodes that are not visited for a while are reclaimed.
+/// One thread at a time.
 class ChunkTree {
  public:
   /// The tiling must outlive the tree.

@@ -11,9 +11,10 @@ namespace meridian::globebrowsing {
 /// prime meridian. Geodetic latitude and longitude are the angles of the outward surface normal, on triaxial bodies
 /// too: normal = (cos lat cos lon, cos lat sin lon, sin lat).
 ///
-/// Spheres and spheroids go through GeographicLib::Geocentric; triaxial bodies by Newton's method on the foot point.
-/// Accuracy: 1e-8 m and 1e-12 rad within 5000 km of the surface of an Earth-sized spheroid. Degenerate input: at a pole
-/// the longitude is 0; at the centre the answer is the end of the shortest axis; never not-a-number for finite input.
+/// cartesian() is the closed form r^2 n / |r n| + h n, on every ellipsoid. geodetic() of spheres and spheroids, oblate
+/// or prolate, is GeographicLib::Geocentric's; of triaxial bodies it is Newton's method on the foot point. Accuracy:
+/// 1e-8 m and 1e-12 rad within 5000 km of the surface of an Earth-sized spheroid. Degenerate input: at a pole the
+/// longitude is 0; at the centre the answer is the end of the shortest axis; never not-a-number for finite input.
 class Ellipsoid {
  public:
   /// Errors: a semi-axis that is not finite or not positive.

@@ -12,8 +12,9 @@ namespace {
 void layOver(std::vector<double>& heights, const HeightPart& part) {
   assert(part.pixels->metres.size() == heights.size());
   for (std::size_t i = 0; i < heights.size(); ++i) {
-    const double layer = applySettings(static_cast<double>(part.pixels->metres[i]), part.settings);
-    if (std::isfinite(layer)) {
+    const double metres = static_cast<double>(part.pixels->metres[i]);
+    const double layer = applySettings(metres, part.settings);
+    if (std::isfinite(metres) && std::isfinite(layer)) {  // a gamma of 0 makes a number of anything
       heights[i] += (layer - heights[i]) * part.opacity;
     }
   }

@@ -11,7 +11,7 @@ namespace meridian::globebrowsing {
 /// One height layer's part in a tile.
 struct HeightPart {
   const HeightPixels* pixels = nullptr;  ///< null or empty: the layer has nothing there
-  LayerSettings settings;
+  LayerSettings settings{};
   double opacity = 1.0;
 };
 

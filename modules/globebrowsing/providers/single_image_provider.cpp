@@ -1,6 +1,7 @@
 #include "globebrowsing/providers/single_image_provider.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 namespace meridian::globebrowsing {
@@ -9,9 +10,12 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A single tile whose unit square is the whole map: it lets the resampler fit an image to any layout. Beyond the edges
-/// the image's outermost pixels go on.
-class WholeMapTiling final : public Tiling {
+/// Where the image is taken to lie, so that the resampler can fit it to any layout: far from the antimeridian and the
+/// poles, where it would continue on the other side.
+constexpr std::array<double, 4> imageDegrees{-90.0, -45.0, 90.0, 45.0};
+
+/// A single tile whose unit square is the image. Beyond the edges the image's outermost pixels go on.
+class ImageTiling final : public Tiling {
  public:
   using Tiling::Tiling;
   [[nodiscard]] int rootCount() const override { return 1; }
@@ -24,10 +28,10 @@ class WholeMapTiling final : public Tiling {
   [[nodiscard]] GeodeticPosition geodetic(const TileIndex& /*index*/, const glm::dvec2& uv) const override {
     const double u = std::clamp(uv.x, 0.0, 1.0);
     const double v = std::clamp(uv.y, 0.0, 1.0);
-    return {pi * (0.5 - v), pi * (2.0 * u - 1.0), 0.0};
+    return {pi / 2.0 * (0.5 - v), pi * (u - 0.5), 0.0};
   }
   [[nodiscard]] TilePlace locate(double latitude, double longitude, int /*level*/) const override {
-    return {TileIndex{}, {longitude / (2.0 * pi) + 0.5, 0.5 - latitude / pi}};
+    return {TileIndex{}, {longitude / pi + 0.5, 0.5 - 2.0 * latitude / pi}};
   }
   [[nodiscard]] bool isSeparable() const override { return true; }
 };
@@ -56,13 +60,13 @@ Result<void> SingleImageProvider::openData() {
   RasterDescription description;
   description.path = path_.text;
   description.where = where_;
-  description.assumeGlobal = true;
+  description.extentDegrees = imageDegrees;
   const Result<std::shared_ptr<RasterSource>> source = RasterSource::open(description);
   if (!source) {
     return tl::make_unexpected(source.error());
   }
   const Result<Ellipsoid> sphere = Ellipsoid::fromRadii(glm::dvec3(1.0));
-  const WholeMapTiling tiling(*sphere);
+  const ImageTiling tiling(*sphere);
   return resampleColours(**source, tiling, TileIndex{}, colourLayout, {})
       .and_then([&](ColourPixels colours) {
         colours_ = std::move(colours);

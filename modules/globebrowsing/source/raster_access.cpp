@@ -22,6 +22,19 @@ tl::unexpected<Error> cancelled(const std::string& where) {
   return failure("cancelled", where);
 }
 
+/// Rasters beyond 2^32 pixels without overviews cannot be averaged in a tolerable time: coarse levels take every
+/// step-th pixel, so that a level costs at most a few million.
+int stepFor(const RasterLevel& level, GDALRasterBand& native) {
+  constexpr double tolerable = 4294967296.0;
+  constexpr double affordable = 4194304.0;
+  const double pixels = double{1.0} * native.GetXSize() * native.GetYSize();
+  int step = 1;
+  while (pixels > tolerable && step < level.factor && pixels / step / step > affordable) {
+    step *= 2;
+  }
+  return step;
+}
+
 SampleType sampleType(GDALRasterBand& band) {
   switch (band.GetRasterDataType()) {
     case GDT_UInt16:
@@ -180,45 +193,40 @@ bool RasterAccess::isKept(std::size_t level, std::size_t pixelBytes) const {
 template <class Pixel>
 Result<void> RasterAccess::readStrips(RasterHandle& handle, const RasterLevel& level, const PixelWindow& window,
                                       Pixel* out, std::ptrdiff_t stride, const std::stop_token& stop) const {
-  const int factor = level.factor;
-  const bool isFull = level.overview < 0;
   GDALRasterBand* band = handle.dataset().GetRasterBand(1);
-  GDALRasterBand* native = isFull ? band : band->GetOverview(level.overview);
+  GDALRasterBand* native = level.overview < 0 ? band : band->GetOverview(level.overview);
   if (native == nullptr) {
     return failure("the raster has lost an overview", where_, "load the layer again");
   }
-  const int nativeX = window.x * factor;
-  const int nativeWidth = std::min(window.width * factor, native->GetXSize() - nativeX);
-  const auto rowBytes = static_cast<std::size_t>(nativeWidth) * static_cast<std::size_t>(factor) * sizeof(Pixel);
-  const int rowsAtOnce = static_cast<int>(std::clamp<std::size_t>(stripBytes / std::max<std::size_t>(rowBytes, 1), 1,
-                                                                  static_cast<std::size_t>(window.height)));
+  const auto nativeSize = [&level](int first, int count, int size) {
+    return static_cast<int>(std::min(std::int64_t{count} * level.factor, std::int64_t{size} - first));
+  };
+  ReadRequest request{level.overview, {}, stepFor(level, *native)};
+  const int factor = level.factor / request.step;
+  request.window.x = window.x * level.factor;
+  request.window.width = nativeSize(request.window.x, window.width, native->GetXSize());
+  const int columns = request.columns();
+  const auto rowBytes = static_cast<std::size_t>(columns) * static_cast<std::size_t>(factor) * sizeof(Pixel);
+  const int rowsAtOnce =
+      static_cast<int>(std::clamp<std::size_t>(stripBytes / rowBytes, 1, static_cast<std::size_t>(window.height)));
+  const bool isDirect = factor == 1 && stride == columns;
   std::vector<Pixel> strip;
   for (int row = 0; row < window.height; row += rowsAtOnce) {
     if (stop.stop_requested()) {
       return cancelled(where_);
     }
     const int rows = std::min(rowsAtOnce, window.height - row);
-    const int nativeY = (window.y + row) * factor;
-    const int nativeHeight = std::min(rows * factor, native->GetYSize() - nativeY);
-    const PixelWindow part{nativeX, nativeY, nativeWidth, nativeHeight};
-    const bool isDirect = factor == 1 && stride == window.width;
-    strip.resize(isDirect ? 0 : static_cast<std::size_t>(nativeWidth) * static_cast<std::size_t>(nativeHeight));
+    request.window.y = (window.y + row) * level.factor;
+    request.window.height = nativeSize(request.window.y, rows, native->GetYSize());
     Pixel* target = out + row * stride;
-    auto done =
-        readPixels(handle.dataset(), rule(target), level.overview, part, isDirect ? target : strip.data(), where_);
-    if (!done || isDirect) {
-      if (!done) {
-        return done;
-      }
-      continue;
+    strip.resize(isDirect ? 0 : static_cast<std::size_t>(columns) * static_cast<std::size_t>(request.rows()));
+    Pixel* into = isDirect ? target : strip.data();
+    if (auto done = readPixels(handle.dataset(), rule(target), request, into, where_); !done) {
+      return done;
     }
-    for (int r = 0; r < rows; ++r) {
-      const Pixel* from = strip.data() + static_cast<std::ptrdiff_t>(r) * factor * nativeWidth;
-      if (factor == 1) {
-        std::copy(from, from + nativeWidth, target + r * stride);
-      } else {
-        reduce(from, nativeWidth, std::min(factor, nativeHeight - r * factor), factor, target + r * stride);
-      }
+    for (int r = 0; r < rows && !isDirect; ++r) {
+      const Pixel* from = strip.data() + static_cast<std::ptrdiff_t>(r) * factor * columns;
+      reduce(from, columns, std::min(factor, request.rows() - r * factor), factor, target + r * stride);
     }
   }
   return {};

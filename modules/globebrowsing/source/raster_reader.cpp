@@ -13,11 +13,6 @@ namespace meridian::globebrowsing {
 
 namespace {
 
-GDALRasterBand* bandAt(GDALDataset& dataset, int band, int overview) {
-  GDALRasterBand* full = dataset.GetRasterBand(band);
-  return overview < 0 || full == nullptr ? full : full->GetOverview(overview);
-}
-
 std::optional<double> noDataOf(GDALRasterBand& band) {
   int has = 0;
   const double value = band.GetNoDataValue(&has);
@@ -101,10 +96,6 @@ void readPalette(GDALRasterBand& band, ColourRule& rule) {
   }
 }
 
-std::string lost(const GDALDataset& /*dataset*/) {
-  return "the raster cannot be read";
-}
-
 }  // namespace
 
 Result<ColourRule> colourRule(GDALDataset& dataset, const std::string& where) {
@@ -149,6 +140,8 @@ HeightRule heightRule(GDALDataset& dataset, const RasterDescription& description
   rule.noData = noDataOf(band);
   rule.hasMask = hasOwnMask(band);
   const GDALDataType type = band.GetRasterDataType();
+  const char* sign = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  rule.isSignedByte = type == GDT_Byte && sign != nullptr && EQUAL(sign, "SIGNEDBYTE");
   rule.isWide = type != GDT_Byte && type != GDT_UInt16 && type != GDT_Int16 && type != GDT_Float32;
   double unit = 1.0;
   const std::string name = band.GetUnitType();
@@ -168,118 +161,169 @@ HeightRule heightRule(GDALDataset& dataset, const RasterDescription& description
   return rule;
 }
 
-Result<void> readPixels(GDALDataset& dataset, const ColourRule& rule, int overview, const PixelWindow& window,
-                        Rgba* out, const std::string& where) {
-  GdalMessages messages;
-  const std::size_t count = static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
-  const auto read = [&](GDALRasterBand* band, void* into, GDALDataType type, int pixelBytes) {
-    return band != nullptr &&
-           band->RasterIO(GF_Read, window.x, window.y, window.width, window.height, into, window.width, window.height,
-                          type, pixelBytes, GSpacing{pixelBytes} * window.width, nullptr) == CE_None;
-  };
-  const bool isDirect = rule.isByte && rule.palette.empty();
+namespace {
+
+/// The bands of one overview, read pixel by pixel of the request into buffers.
+class BandReader {
+ public:
+  BandReader(GDALDataset& dataset, const ReadRequest& request) : dataset_(dataset), request_(request) {}
+
+  [[nodiscard]] GDALRasterBand* band(int number) const {
+    GDALRasterBand* full = dataset_.GetRasterBand(number);
+    return request_.overview < 0 || full == nullptr ? full : full->GetOverview(request_.overview);
+  }
+  [[nodiscard]] GDALRasterBand* mask(int number) const {
+    GDALRasterBand* of = band(number);
+    return of != nullptr ? of->GetMaskBand() : nullptr;
+  }
+  /// pixelBytes: from one pixel to the next in `into`.
+  [[nodiscard]] bool read(GDALRasterBand* from, void* into, GDALDataType type, int pixelBytes) const {
+    const PixelWindow& window = request_.window;
+    return from != nullptr && from->RasterIO(GF_Read, window.x, window.y, window.width, window.height, into,
+                                             request_.columns(), request_.rows(), type, pixelBytes,
+                                             GSpacing{pixelBytes} * request_.columns(), nullptr) == CE_None;
+  }
+  [[nodiscard]] std::size_t count() const {
+    return static_cast<std::size_t>(request_.columns()) * static_cast<std::size_t>(request_.rows());
+  }
+
+ private:
+  GDALDataset& dataset_;
+  const ReadRequest& request_;
+};
+
+tl::unexpected<Error> cannotRead(const GdalMessages& messages, const std::string& where) {
+  return messages.failure("the raster cannot be read", where, "check that the file is complete");
+}
+
+/// Bytes as they are; alpha 0 where all bands have their nodata value.
+bool readBytes(GDALDataset& dataset, const ColourRule& rule, const ReadRequest& request, Rgba* out) {
+  const BandReader reader(dataset, request);
+  const std::size_t count = reader.count();
   const std::size_t channels = rule.isGrey() ? 1 : 3;
-  std::vector<std::uint8_t> absent(count, 1);
-  std::vector<double> wide(isDirect ? 0 : count);
-  if (isDirect && channels == 3 && overview < 0) {
+  if (channels == 3 && request.overview < 0) {
+    // All at once: pixel-interleaved files are then decoded once.
     std::array<int, 3> bands = rule.bands;
-    if (dataset.RasterIO(GF_Read, window.x, window.y, window.width, window.height, out->data(), window.width,
-                         window.height, GDT_Byte, 3, bands.data(), 4, GSpacing{4} * window.width, 1,
+    const PixelWindow& window = request.window;
+    if (dataset.RasterIO(GF_Read, window.x, window.y, window.width, window.height, out->data(), request.columns(),
+                         request.rows(), GDT_Byte, 3, bands.data(), 4, GSpacing{4} * request.columns(), 1,
                          nullptr) != CE_None) {
-      return messages.failure(lost(dataset), where, "check that the file is complete");
+      return false;
+    }
+  } else {
+    for (std::size_t c = 0; c < channels; ++c) {
+      if (!reader.read(reader.band(rule.bands[c]), out->data() + c, GDT_Byte, 4)) {
+        return false;
+      }
     }
   }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (channels == 1) {
+      out[i][1] = out[i][2] = out[i][0];
+    }
+    bool isAbsent = true;
+    for (std::size_t c = 0; c < channels; ++c) {
+      isAbsent = isAbsent && rule.noData[c] && out[i][c] == *rule.noData[c];
+    }
+    out[i][3] = isAbsent ? 0 : 255;
+  }
+  return true;
+}
+
+/// Values by the palette or by their range; alpha as above.
+bool readValues(GDALDataset& dataset, const ColourRule& rule, const ReadRequest& request, Rgba* out) {
+  const BandReader reader(dataset, request);
+  const std::size_t channels = rule.isGrey() ? 1 : 3;
+  std::vector<double> values(reader.count());
+  std::fill(out, out + values.size(), Rgba{});
   for (std::size_t c = 0; c < channels; ++c) {
-    GDALRasterBand* band = bandAt(dataset, rule.bands[c], overview);
+    if (!reader.read(reader.band(rule.bands[c]), values.data(), GDT_Float64, 8)) {
+      return false;
+    }
     const std::optional<double>& noData = rule.noData[c];
-    if (isDirect) {
-      if ((channels == 1 || overview >= 0) && !read(band, out->data() + c, GDT_Byte, 4)) {
-        return messages.failure(lost(dataset), where, "check that the file is complete");
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double value = values[i];
+      // A nodata value of a float raster may be written in the file as a double next to it.
+      if (std::isnan(value) ||
+          (noData && (value == *noData || static_cast<float>(value) == static_cast<float>(*noData)))) {
+        continue;
       }
-      for (std::size_t i = 0; i < count; ++i) {
-        absent[i] = static_cast<std::uint8_t>(absent[i] & (noData && out[i][c] == *noData ? 1U : 0U));
-      }
-      continue;
-    }
-    if (!read(band, wide.data(), GDT_Float64, 8)) {
-      return messages.failure(lost(dataset), where, "check that the file is complete");
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const bool none = std::isnan(wide[i]) ||
-                        (noData && (wide[i] == *noData || static_cast<float>(wide[i]) == static_cast<float>(*noData)));
-      absent[i] = static_cast<std::uint8_t>(absent[i] & (none ? 1U : 0U));
       if (!rule.palette.empty()) {
-        const bool known = wide[i] >= 0 && wide[i] < static_cast<double>(rule.palette.size());
-        out[i] = known ? rule.palette[static_cast<std::size_t>(wide[i])] : Rgba{};
-      } else {
-        const double value = none ? 0.0 : std::clamp(wide[i] * rule.scale[c] + rule.offset[c], 0.0, 255.0);
-        out[i][c] = static_cast<std::uint8_t>(std::lround(value));
+        const bool isKnown = value >= 0 && value < static_cast<double>(rule.palette.size());
+        out[i] = isKnown ? rule.palette[static_cast<std::size_t>(value)] : Rgba{};
+        continue;
       }
-    }
-  }
-  if (rule.palette.empty()) {
-    for (std::size_t i = 0; i < count; ++i) {
+      out[i][c] =
+          static_cast<std::uint8_t>(std::lround(std::clamp(value * rule.scale[c] + rule.offset[c], 0.0, 255.0)));
+      out[i][3] = 255;
       if (channels == 1) {
         out[i][1] = out[i][2] = out[i][0];
       }
-      out[i][3] = absent[i] != 0 ? 0 : 255;
-    }
-  } else {
-    for (std::size_t i = 0; i < count; ++i) {
-      out[i][3] = absent[i] != 0 ? 0 : out[i][3];
     }
   }
-  GDALRasterBand* alpha = rule.alphaBand != 0 ? bandAt(dataset, rule.alphaBand, overview) : nullptr;
-  if (rule.hasMask) {
-    GDALRasterBand* band = bandAt(dataset, rule.bands[0], overview);
-    alpha = band != nullptr ? band->GetMaskBand() : nullptr;
+  return true;
+}
+
+bool readAlpha(GDALDataset& dataset, const ColourRule& rule, const ReadRequest& request, Rgba* out) {
+  if (rule.alphaBand == 0 && !rule.hasMask) {
+    return true;
   }
-  if (alpha != nullptr) {
-    wide.resize(count);
-    if (!read(alpha, wide.data(), GDT_Float64, 8)) {
-      return messages.failure(lost(dataset), where, "check that the file is complete");
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const double value = rule.hasMask ? (wide[i] != 0 ? 255.0 : 0.0) : wide[i] * rule.scale[3] + rule.offset[3];
-      out[i][3] = std::min(out[i][3], static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0))));
-    }
+  const BandReader reader(dataset, request);
+  GDALRasterBand* alpha = rule.hasMask ? reader.mask(rule.bands[0]) : reader.band(rule.alphaBand);
+  std::vector<double> values(reader.count());
+  if (!reader.read(alpha, values.data(), GDT_Float64, 8)) {
+    return false;
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double value = rule.hasMask ? (values[i] != 0 ? 255.0 : 0.0) : values[i] * rule.scale[3] + rule.offset[3];
+    out[i][3] = std::min(out[i][3], static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0))));
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<void> readPixels(GDALDataset& dataset, const ColourRule& rule, const ReadRequest& request, Rgba* out,
+                        const std::string& where) {
+  const GdalMessages messages;
+  const bool isDirect = rule.isByte && rule.palette.empty();
+  const bool isRead = isDirect ? readBytes(dataset, rule, request, out) : readValues(dataset, rule, request, out);
+  if (!isRead || !readAlpha(dataset, rule, request, out)) {
+    return cannotRead(messages, where);
   }
   return {};
 }
 
-Result<void> readPixels(GDALDataset& dataset, const HeightRule& rule, int overview, const PixelWindow& window,
-                        float* out, const std::string& where) {
-  GdalMessages messages;
-  const std::size_t count = static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
-  GDALRasterBand* band = bandAt(dataset, 1, overview);
-  const auto read = [&](GDALRasterBand* from, void* into, GDALDataType type) {
-    return from != nullptr && from->RasterIO(GF_Read, window.x, window.y, window.width, window.height, into,
-                                             window.width, window.height, type, 0, 0, nullptr) == CE_None;
-  };
+Result<void> readPixels(GDALDataset& dataset, const HeightRule& rule, const ReadRequest& request, float* out,
+                        const std::string& where) {
+  const GdalMessages messages;
+  const BandReader reader(dataset, request);
+  const std::size_t count = reader.count();
   constexpr float none = std::numeric_limits<float>::quiet_NaN();
   if (rule.isWide) {
-    std::vector<double> wide(count);
-    if (!read(band, wide.data(), GDT_Float64)) {
-      return messages.failure(lost(dataset), where, "check that the file is complete");
+    std::vector<double> values(count);
+    if (!reader.read(reader.band(1), values.data(), GDT_Float64, 8)) {
+      return cannotRead(messages, where);
     }
     for (std::size_t i = 0; i < count; ++i) {
-      const bool absent = !std::isfinite(wide[i]) || (rule.noData && wide[i] == *rule.noData);
-      out[i] = absent ? none : static_cast<float>(wide[i] * rule.scale + rule.offset);
+      const bool isAbsent = !std::isfinite(values[i]) || (rule.noData && values[i] == *rule.noData);
+      out[i] = isAbsent ? none : static_cast<float>(values[i] * rule.scale + rule.offset);
     }
   } else {
-    if (!read(band, out, GDT_Float32)) {
-      return messages.failure(lost(dataset), where, "check that the file is complete");
+    if (!reader.read(reader.band(1), out, GDT_Float32, 4)) {
+      return cannotRead(messages, where);
     }
     const float noData = rule.noData ? static_cast<float>(*rule.noData) : none;
     for (std::size_t i = 0; i < count; ++i) {
-      const bool absent = !std::isfinite(out[i]) || out[i] == noData;
-      out[i] = absent ? none : static_cast<float>(out[i] * rule.scale + rule.offset);
+      const float value = rule.isSignedByte && out[i] > 127.0F ? out[i] - 256.0F : out[i];
+      const bool isAbsent = !std::isfinite(value) || value == noData;
+      out[i] = isAbsent ? none : static_cast<float>(value * rule.scale + rule.offset);
     }
   }
   if (rule.hasMask) {
     std::vector<std::uint8_t> mask(count);
-    if (!read(band->GetMaskBand(), mask.data(), GDT_Byte)) {
-      return messages.failure(lost(dataset), where, "check that the file is complete");
+    if (!reader.read(reader.mask(1), mask.data(), GDT_Byte, 1)) {
+      return cannotRead(messages, where);
     }
     for (std::size_t i = 0; i < count; ++i) {
       out[i] = mask[i] != 0 ? out[i] : none;

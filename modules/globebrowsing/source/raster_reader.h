@@ -41,7 +41,8 @@ struct HeightRule {
   double scale = 1.0;
   double offset = 0.0;
   std::optional<double> noData{};
-  bool isWide = false;  ///< values need a double
+  bool isSignedByte = false;  ///< bytes over 127 are negative
+  bool isWide = false;        ///< values need a double
   bool hasMask = false;
 };
 
@@ -49,10 +50,20 @@ struct HeightRule {
 [[nodiscard]] Result<ColourRule> colourRule(GDALDataset& dataset, const std::string& where);
 [[nodiscard]] HeightRule heightRule(GDALDataset& dataset, const RasterDescription& description);
 
-/// Read a window of the dataset, or of its overview of that number (-1: full resolution), into rows of window.width.
-[[nodiscard]] Result<void> readPixels(GDALDataset& dataset, const ColourRule& rule, int overview,
-                                      const PixelWindow& window, Rgba* out, const std::string& where);
-[[nodiscard]] Result<void> readPixels(GDALDataset& dataset, const HeightRule& rule, int overview,
-                                      const PixelWindow& window, float* out, const std::string& where);
+/// What of a raster is read: a window of its overview of that number (-1: full resolution), of `step` x `step` pixels
+/// only the nearest one.
+struct ReadRequest {
+  int overview = -1;
+  PixelWindow window{};
+  int step = 1;
+  [[nodiscard]] int columns() const { return (window.width - 1) / step + 1; }
+  [[nodiscard]] int rows() const { return (window.height - 1) / step + 1; }
+};
+
+/// Read into rows of request.columns() pixels.
+[[nodiscard]] Result<void> readPixels(GDALDataset& dataset, const ColourRule& rule, const ReadRequest& request,
+                                      Rgba* out, const std::string& where);
+[[nodiscard]] Result<void> readPixels(GDALDataset& dataset, const HeightRule& rule, const ReadRequest& request,
+                                      float* out, const std::string& where);
 
 }  // namespace meridian::globebrowsing

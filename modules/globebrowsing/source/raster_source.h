@@ -73,7 +73,8 @@ struct RasterInfo {
 /// No data is what the nodata value, the mask, alpha 0 or not-a-number say; a colour is absent where all bands are.
 ///
 /// Safe from any thread: each call borrows a GDAL dataset of its own from a pool. Rasters up to 64 MiB decoded are kept
-/// in memory once they are sampled; coarser levels of rasters without overviews are averaged once and kept.
+/// in memory once they are sampled; coarser levels of rasters without overviews are averaged once and kept (beyond 2^32
+/// pixels, thinned: such a raster wants overviews).
 class RasterSource {
  public:
   /// Opens and examines; may read from disk or network, so call it on a worker. Errors: no such file, a directory, not

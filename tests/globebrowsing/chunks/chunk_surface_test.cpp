@@ -4,6 +4,7 @@
 #include <random>
 
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <gtest/gtest.h>
 
 #include "globebrowsing/tiling/geodetic_tiling.h"

@@ -40,8 +40,13 @@ TEST_F(BadInput, IsRefusedByName) {
   expectRefused({write("text.tif", "this is no raster")}, "no raster that GDAL can read");
   expectRefused({write("empty.tif", "")}, "no raster that GDAL can read");
   expectRefused({"<VRTDataset rasterXSize=\"10\"", "inline"}, "no raster that GDAL can read");
-  expectRefused({"<VRTDataset rasterXSize=\"10\" rasterYSize=\"10\"/>", "inline"}, "no bands");
   expectRefused({"WMS:", "inline"}, "no raster that GDAL can read");
+}
+
+TEST_F(BadInput, AContainerOfSeveralRastersIsRefused) {
+  const std::string path = "/usr/share/ferret-vis/data/coads_climatology.cdf";
+  MERIDIAN_NEEDS(path);
+  expectRefused({path}, "no bands");
 }
 
 TEST_F(BadInput, ComplexSamplesAreRefused) {
@@ -97,6 +102,8 @@ TEST_F(BadInput, AnAbsurdSizeCostsNothing) {
   ASSERT_TRUE(source) << source.error().message();
   const GeodeticTiling tiling = earth();
   EXPECT_TRUE(colours(**source, tiling, tileAt(tiling, 10, 30, 20)).anyOpaque);
+  EXPECT_TRUE(colours(**source, tiling, tileAt(tiling, 10, 30, 12)).anyOpaque);
+  EXPECT_TRUE(colours(**source, tiling, TileIndex{}).allOpaque);
 }
 
 }  // namespace

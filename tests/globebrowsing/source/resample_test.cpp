@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Conventions, GlobalRaster,
                          testing::Values(Global{"from0", 0.0, false}, Global{"from180W", -180.0, false},
                                          Global{"nodesFrom0", 0.0, true}, Global{"nodesFrom180W", -180.0, true},
                                          Global{"from30W", -30.0, false}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& tested) { return tested.param.name; });
 
 /// White noise, so that any difference in place or weights shows.
 double noise(int column, int row) {
@@ -300,7 +300,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Typed{"Int32", GDT_Int32, -70000, 90000, 0, 255}, Typed{"UInt64", GDT_UInt64, 1, 1e6, 0, 255},
                     Typed{"Int64", GDT_Int64, -5, 1e6, 0, 255}, Typed{"Float32", GDT_Float32, -0.25, 0.75, 0, 255},
                     Typed{"Float64", GDT_Float64, -0.25, 0.75, 0, 255}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& tested) { return tested.param.name; });
 
 TEST(ResampleColours, ReadsGreyAlphaAndPalettes) {
   const GeodeticTiling tiling = earth();

@@ -42,19 +42,20 @@ const std::vector<TileIndex>& tiles() {
       }
     }
     std::mt19937 random(11);
+    const auto draw = [&random] { return static_cast<std::uint32_t>(random()); };
     for (int level = 8; level <= maximumLevel; ++level) {
       const std::uint32_t rows = 1U << level;
       for (int i = 0; i < 200; ++i) {
-        std::uint32_t row = random() % rows;
+        std::uint32_t row = draw() % rows;
         if (i % 4 == 1) {
-          row = random() % 40 % rows;
+          row = draw() % 40 % rows;
         } else if (i % 4 == 2) {
-          row = rows - 1 - random() % 40 % rows;
+          row = rows - 1 - draw() % 40 % rows;
         } else if (i % 4 == 3) {
-          row = std::min(rows - 1, rows >> (random() % static_cast<unsigned>(level)));
+          row = std::min(rows - 1, rows >> (draw() % static_cast<unsigned>(level)));
         }
         const std::uint32_t columns = GeodeticTiling::columns(level, row);
-        const std::uint32_t column = i % 5 == 0 ? 0 : (i % 5 == 1 ? columns - 1 : random() % columns);
+        const std::uint32_t column = i % 5 == 0 ? 0 : (i % 5 == 1 ? columns - 1 : draw() % columns);
         list.push_back(tile(i % 2, level, column, row));
       }
     }

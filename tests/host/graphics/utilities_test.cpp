@@ -1,3 +1,5 @@
+#include <cstdlib>
+#include <filesystem>
 #include <thread>
 
 #include "graphics_fixture.h"
@@ -147,6 +149,47 @@ TEST(UploadBudget, IsSpentBySpansOnly) {
   budget.begin(1.0);
   EXPECT_TRUE(budget.left());
   EXPECT_EQ(budget.spent(), 0.0);
+}
+
+class ShaderCacheFolder : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const char* value = std::getenv(variable)) {
+      before_ = value;
+    }
+    unsetenv(variable);
+  }
+  void TearDown() override {
+    before_.empty() ? unsetenv(variable) : setenv(variable, before_.c_str(), 1);
+    std::filesystem::remove_all(folder_);
+  }
+
+  static constexpr const char* variable = "MESA_SHADER_CACHE_DIR";
+  std::filesystem::path folder_ = std::filesystem::path(MERIDIAN_TEST_FOLDER) / "cache_folder";
+  std::string before_;
+};
+
+TEST_F(ShaderCacheFolder, IsMadeAndToldToTheDriver) {
+  const auto used = useShaderCacheFolder(folder_);
+  ASSERT_TRUE(used.has_value()) << used.error().message();
+  EXPECT_TRUE(std::filesystem::is_directory(*used));
+  EXPECT_EQ(used->parent_path(), folder_);
+  EXPECT_EQ(std::getenv(variable), used->string());
+}
+
+TEST_F(ShaderCacheFolder, IsTheUsersWhenTheyNameOne) {
+  setenv(variable, "/somewhere/else", 1);
+  const auto used = useShaderCacheFolder(folder_);
+  ASSERT_TRUE(used.has_value());
+  EXPECT_EQ(*used, "/somewhere/else");
+  EXPECT_FALSE(std::filesystem::exists(folder_));
+}
+
+TEST_F(ShaderCacheFolder, IsAnErrorWhereNoneCanBe) {
+  const auto used = useShaderCacheFolder("/proc/meridian");
+  ASSERT_FALSE(used.has_value());
+  EXPECT_EQ(used.error().where, "/proc/meridian/shaders");
+  EXPECT_EQ(std::getenv(variable), nullptr);
 }
 
 TEST(WindowContext, NamesTheReasonWithoutADisplay) {

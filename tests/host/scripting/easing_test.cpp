@@ -1,10 +1,10 @@
 #include "host/scripting/easing.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <map>
 #include <string>
+
+#include <gtest/gtest.h>
 
 namespace meridian::scripting {
 namespace {

@@ -45,18 +45,23 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Endless{"while", "while true do end"},
                     Endless{"pcallLoop", "while true do pcall(function() while true do end end) end"},
                     Endless{"nestedPcall", "local function f() pcall(f) while true do end end f()"},
-                    Endless{"xpcallHandler", "xpcall(function() while true do end end, function() while true do end end) "
-                                             "while true do end"},
-                    Endless{"coroutine", "while true do local c = coroutine.wrap(function() while true do end end) "
-                                         "pcall(c) end"},
+                    Endless{"xpcallHandler",
+                            "xpcall(function() while true do end end, function() while true do end end) "
+                            "while true do end"},
+                    Endless{"coroutine",
+                            "while true do local c = coroutine.wrap(function() while true do end end) "
+                            "pcall(c) end"},
                     Endless{"manyCoroutines", "while true do coroutine.wrap(function() end)() end"},
-                    Endless{"metamethod", "local t = setmetatable({}, {__index = function(t, k) while true do end end}) "
-                                          "while true do pcall(function() return t.x end) end"},
-                    Endless{"close", "do local x <close> = setmetatable({}, {__close = function() while true do end end}) "
-                                     "end"},
+                    Endless{"metamethod",
+                            "local t = setmetatable({}, {__index = function(t, k) while true do end end}) "
+                            "while true do pcall(function() return t.x end) end"},
+                    Endless{"close",
+                            "do local x <close> = setmetatable({}, {__close = function() while true do end end}) "
+                            "end"},
                     Endless{"gsub", "string.gsub(('x'):rep(10), 'x', function() while true do end end)"},
                     Endless{"sort", "table.sort({3, 2, 1}, function(a, b) while true do end end)"},
-                    Endless{"lyingLength", "table.insert(setmetatable({}, {__len = function() return 1 << 60 end}), 1, 1)"},
+                    Endless{"lyingLength",
+                            "table.insert(setmetatable({}, {__len = function() return 1 << 60 end}), 1, 1)"},
                     Endless{"move", "table.move({}, 1, 1 << 60, 2)"},
                     Endless{"finalizer", "setmetatable({}, {__gc = function() while true do end end})"},
                     Endless{"recursion", "local function f() return 1 + f() end f()"},
@@ -65,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Endless{"repBomb", "local s = string.rep('x', 1 << 40)"},
                     Endless{"concatBomb", "local s = 'x' while true do s = s .. s end"},
                     Endless{"tableBomb", "local t = {} for i = 1, 1e9 do t[i] = {} end"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& each) { return each.param.name; });
 
 TEST(Sandbox, NamesTheLineOfAnEndlessLoop) {
   ScriptEngine engine(small());
@@ -103,7 +108,8 @@ TEST(Sandbox, FreesTheMemoryOfAScriptThatAskedForTooMuch) {
 TEST(Sandbox, KeepsTheTableFunctionsWorking) {
   ScriptEngine engine(small());
   const Result<void> result = engine.run(
-      "local t = {3, 1} table.insert(t, 2) table.insert(t, 1, 9) table.sort(t) assert(table.concat(t, ',') == '1,2,3,9')"
+      "local t = {3, 1} table.insert(t, 2) table.insert(t, 1, 9) table.sort(t) assert(table.concat(t, ',') == "
+      "'1,2,3,9')"
       "assert(table.remove(t) == 9) table.move(t, 1, 3, 2) assert(#t == 4)"
       "assert(getmetatable(setmetatable({}, {__index = t})).__index == t)",
       "test");

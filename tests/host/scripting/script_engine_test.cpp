@@ -60,7 +60,7 @@ TEST_F(ScriptEngineTest, GivesAnErrorBackInItsParts) {
   EXPECT_EQ(error.what, "no way");
   EXPECT_EQ(error.where, std::string(file_) + ":3: Scene.Earth");
   EXPECT_EQ(error.remedy, "turn back");
-  EXPECT_EQ(engine_.evaluate("select(2, pcall(openspace.test.fail))", "test")->at(0).string()->find("Scene.Earth"), 0u);
+  EXPECT_EQ(engine_.evaluate("select(2, pcall(openspace.test.fail))", "test")->at(0).string()->find("Scene.Earth"), 8u);
 }
 
 TEST_F(ScriptEngineTest, NamesFileAndLineOfEveryKindOfError) {
