@@ -50,7 +50,7 @@ TEST(Options, TakesTheWholeCommandLine) {
                                     "--set",       "Scene.*.Enabled=false",
                                     "--set",       "A.B={1, 2}",
                                     "--script",    "run.lua",
-                                    "--play",      "flight.osrectxt",
+                                    "--record",    "flight.osrectxt",
                                     "--frames",    "12",
                                     "--fps",       "29.97",
                                     "--settle",    "2.5",
