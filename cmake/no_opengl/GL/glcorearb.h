@@ -1,1 +1,2 @@
-#error "This room is free of OpenGL (docs/architecture.md, The house): move what needs it to host/graphics, gpu or surface."
+#error \
+    "This room is free of OpenGL (docs/architecture.md, The house): move what needs it to host/graphics, gpu or surface."

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "globebrowsing/chunks/chunk_surface.h"
 #include "globebrowsing/gpu/slot_pool.h"
+#include "globebrowsing/layers/chunk_surface.h"
 #include "globebrowsing/tiling/tile_index.h"
 #include "host/graphics/gl_objects.h"
 

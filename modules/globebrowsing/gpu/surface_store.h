@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "globebrowsing/chunks/chunk_surface.h"
 #include "globebrowsing/gpu/surface_pool.h"
+#include "globebrowsing/layers/chunk_surface.h"
 #include "globebrowsing/layers/layer_manager.h"
 #include "globebrowsing/streaming/tile_streamer.h"
 #include "host/graphics/upload_budget.h"

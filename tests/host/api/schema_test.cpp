@@ -9,24 +9,26 @@ const Schema layer({{"Identifier", Schema::Type::Identifier, "the layer's name i
                     {"Opacity", Schema::Type::Number, "how opaque it is", false, 0.0, 1.0},
                     {"BlendMode", Schema::Type::String, "how it blends", false, {}, {}, {"Normal", "Multiply"}}});
 
-Value table(std::map<std::string, Value, std::less<>> fields) { return Table{{}, std::move(fields)}; }
+Value table(std::map<std::string, Value, std::less<>> fields) {
+  return Table{{}, std::move(fields)};
+}
 
 TEST(Schema, AcceptsWhatItDescribesAndIgnoresTheRest) {
-    EXPECT_TRUE(layer.validate(table({{"Identifier", "a"}, {"Opacity", 1.0}, {"Padding", "?"}}), "x.asset:1"));
+  EXPECT_TRUE(layer.validate(table({{"Identifier", "a"}, {"Opacity", 1.0}, {"Padding", "?"}}), "x.asset:1"));
 }
 
 TEST(Schema, NamesThePlaceAndTheKeyOfAMissingField) {
-    const Result<void> result = layer.validate(table({}), "x.asset:7", "Layers.ColorLayers[1]");
-    ASSERT_FALSE(result);
-    EXPECT_EQ(result.error().where, "x.asset:7: Layers.ColorLayers[1].Identifier");
+  const Result<void> result = layer.validate(table({}), "x.asset:7", "Layers.ColorLayers[1]");
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().where, "x.asset:7: Layers.ColorLayers[1].Identifier");
 }
 
 TEST(Schema, RefusesWrongTypesRangesAndChoices) {
-    EXPECT_FALSE(layer.validate(table({{"Identifier", "two words"}}), ""));
-    EXPECT_FALSE(layer.validate(table({{"Identifier", "a"}, {"Opacity", 1.5}}), ""));
-    EXPECT_FALSE(layer.validate(table({{"Identifier", "a"}, {"Opacity", std::numeric_limits<double>::quiet_NaN()}}), ""));
-    EXPECT_FALSE(layer.validate(table({{"Identifier", "a"}, {"BlendMode", "Dodge"}}), ""));
-    EXPECT_FALSE(layer.validate(3.0, ""));
+  EXPECT_FALSE(layer.validate(table({{"Identifier", "two words"}}), ""));
+  EXPECT_FALSE(layer.validate(table({{"Identifier", "a"}, {"Opacity", 1.5}}), ""));
+  EXPECT_FALSE(layer.validate(table({{"Identifier", "a"}, {"Opacity", std::numeric_limits<double>::quiet_NaN()}}), ""));
+  EXPECT_FALSE(layer.validate(table({{"Identifier", "a"}, {"BlendMode", "Dodge"}}), ""));
+  EXPECT_FALSE(layer.validate(3.0, ""));
 }
 
 }  // namespace

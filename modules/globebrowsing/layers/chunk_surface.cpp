@@ -1,4 +1,4 @@
-#include "globebrowsing/chunks/chunk_surface.h"
+#include "globebrowsing/layers/chunk_surface.h"
 
 #include <algorithm>
 #include <cassert>

@@ -8,7 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "globebrowsing/chunks/chunk_grid.h"
+#include "globebrowsing/layers/chunk_grid.h"
 #include "globebrowsing/streaming/tile_data.h"
 #include "globebrowsing/streaming/tile_residency.h"
 #include "globebrowsing/tiling/tiling.h"

@@ -1,4 +1,4 @@
-#include "globebrowsing/chunks/chunk_grid.h"
+#include "globebrowsing/layers/chunk_grid.h"
 
 #include <cassert>
 
