@@ -218,15 +218,17 @@ class Show {
       return tl::make_unexpected(panels.error());
     }
     panels_ = std::move(*panels);
-    panels_->add(std::make_unique<ui::ScenePanel>(ui::ScenePanel::Subjects{
-        application_.clock(), application_.camera(), application_.navigator(), [this](std::string_view node) {
-          application_.navigator().stop();
-          failed(showNode(application_.camera(), node));
-        }}));
+    panels_->add(std::make_unique<ui::ScenePanel>(
+                     ui::ScenePanel::Subjects{application_.clock(), application_.camera(), application_.navigator(),
+                                              [this](std::string_view node) {
+                                                application_.navigator().stop();
+                                                failed(showNode(application_.camera(), node));
+                                              }}),
+                 ui::UserInterface::Side::Left);
     for (auto& panel : application_.takePanels()) {
-      panels_->add(std::move(panel));
+      panels_->add(std::move(panel), ui::UserInterface::Side::Right);
     }
-    panels_->add(std::make_unique<ui::StatisticsPanel>(application_.statistics()));
+    panels_->add(std::make_unique<ui::StatisticsPanel>(application_.statistics()), ui::UserInterface::Side::Left);
     return {};
   }
 

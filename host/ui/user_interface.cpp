@@ -2,6 +2,7 @@
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
 #include <imgui.h>
 
 #include "host/graphics/default_state.h"
@@ -36,7 +37,7 @@ class ImGuiInterface final : public UserInterface {
     return drawing_;
   }
 
-  void add(std::unique_ptr<Panel> panel) override { panels_.push_back(std::move(panel)); }
+  void add(std::unique_ptr<Panel> panel, Side side) override { panels_.push_back({std::move(panel), side}); }
 
   void draw() override {
     if (!visible_) {
@@ -47,6 +48,7 @@ class ImGuiInterface final : public UserInterface {
     ImGui::NewFrame();
     buildPanels();
     ImGui::Render();
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     graphics::applyDefaultState();
   }
@@ -60,11 +62,13 @@ class ImGuiInterface final : public UserInterface {
   void buildPanels() {
     // They start one below the other. How high they are ImGui knows after having built them once or twice.
     const ImGuiCond place = ImGui::GetFrameCount() <= framesToPlace ? ImGuiCond_Always : ImGuiCond_FirstUseEver;
-    constexpr float margin = 10.0F;
-    float top = margin;
-    for (const auto& panel : panels_) {
-      ImGui::SetNextWindowPos({margin, top}, place);
-      ImGui::SetNextWindowSizeConstraints({0.0F, 0.0F}, {10'000.0F, ImGui::GetIO().DisplaySize.y - 2.0F * margin});
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    float tops[] = {margin, margin};
+    for (const auto& [panel, side] : panels_) {
+      const bool isRight = side == Side::Right;
+      float& top = tops[isRight ? 1 : 0];
+      ImGui::SetNextWindowPos({isRight ? screen.x - margin : margin, top}, place, {isRight ? 1.0F : 0.0F, 0.0F});
+      ImGui::SetNextWindowSizeConstraints({leastWidth, 0.0F}, {10'000.0F, screen.y - 2.0F * margin});
       if (ImGui::Begin(panel->title().c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
         panel->build(builder_);
       }
@@ -73,6 +77,12 @@ class ImGuiInterface final : public UserInterface {
     }
   }
 
+  struct Placed {
+    std::unique_ptr<Panel> panel;
+    Side side;
+  };
+  static constexpr float margin = 10.0F;
+  static constexpr float leastWidth = 240.0F;
   static constexpr int framesToPlace = 3;
 
   ImGuiContext* context_;
@@ -80,7 +90,7 @@ class ImGuiInterface final : public UserInterface {
   bool drawing_ = false;
   bool visible_ = true;
   ImGuiPanelBuilder builder_;
-  std::vector<std::unique_ptr<Panel>> panels_;
+  std::vector<Placed> panels_;
 };
 
 }  // namespace

@@ -17,7 +17,9 @@ class UserInterface {
   [[nodiscard]] static Result<std::unique_ptr<UserInterface>> create(GLFWwindow* window);
   virtual ~UserInterface() = default;
 
-  virtual void add(std::unique_ptr<Panel> panel) = 0;
+  /// Where a panel starts: below those that were added to the same side before.
+  enum class Side { Left, Right };
+  virtual void add(std::unique_ptr<Panel> panel, Side side) = 0;
   /// Builds the panels and draws them into framebuffer 0; leaves the default GL state behind. Hidden: does nothing.
   virtual void draw() = 0;
 

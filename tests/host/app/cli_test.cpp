@@ -216,8 +216,8 @@ TEST_F(CommandLine, ARecordingIsPlayedToItsEnd) {
   emptyScene();
   write("flight.osrectxt",
         "OpenSpace_record/playback03.00A\n"
-        "camera 0.0 0.0 0.0 0.0 0.0 5000.0 0.0 0.0 0.0 1.0 1.0 - Place\n"
-        "camera 0.5 0.5 0.5 0.0 0.0 3000.0 0.0 0.0 0.0 1.0 1.0 - Place\n");
+        "camera 0.0 0.0 0.0 0.0 5000.0 0.0 0.0 0.0 1.0 1.0 - Place\n"
+        "camera 0.5 0.5 0.0 0.0 3000.0 0.0 0.0 0.0 1.0 1.0 - Place\n");
   const Outcome outcome = run("empty.asset --headless --size 8x8 --play flight.osrectxt --fps 10 --output frames");
   ASSERT_EQ(outcome.code, 0) << outcome.errors;
   EXPECT_TRUE(fs::exists(in("frames/frame_000005.png")));
@@ -227,7 +227,7 @@ TEST_F(CommandLine, ARecordingIsPlayedToItsEnd) {
 TEST_F(CommandLine, AnInterruptedRunClosesItsOutput) {
   emptyScene();
   const Outcome outcome = run(
-      "empty.asset --headless --size 64x64 --frames 1000000 --output video.mkv --stats stats.json", "timeout -s INT 3");
+      "empty.asset --headless --size 64x64 --frames 1000000 --output video.mkv --stats stats.json", "timeout -s INT 1");
   EXPECT_EQ(outcome.code, 124) << outcome.errors;  // timeout's own code: it had to interrupt
   EXPECT_THAT(outcome.errors, HasSubstr("interrupted"));
   EXPECT_GT(nlohmann::json::parse(readFile(in("stats.json")))["frames"], 1);

@@ -50,7 +50,7 @@ TEST(Options, TakesTheWholeCommandLine) {
                                     "--set",       "Scene.*.Enabled=false",
                                     "--set",       "A.B={1, 2}",
                                     "--script",    "run.lua",
-                                    "--play",      "flight.osrectxt",
+                                    "--record",    "flight.osrectxt",
                                     "--frames",    "12",
                                     "--fps",       "29.97",
                                     "--settle",    "2.5",
@@ -76,7 +76,7 @@ TEST(Options, TakesTheWholeCommandLine) {
   EXPECT_EQ(options.settings[0].value, "false");
   EXPECT_EQ(options.settings[1].value, "{1, 2}");
   EXPECT_EQ(options.script, "run.lua");
-  EXPECT_EQ(options.play, "flight.osrectxt");
+  EXPECT_EQ(options.record, "flight.osrectxt");
   EXPECT_EQ(options.frames, 12U);
   EXPECT_EQ(options.fps, 29.97);
   EXPECT_EQ(options.settleSeconds, 2.5);

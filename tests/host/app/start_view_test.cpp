@@ -57,7 +57,7 @@ TEST_F(StartViewTest, ItsLitSideIsShown) {
 TEST_F(StartViewTest, ACameraThatScriptsHavePlacedStays) {
   addNode("Ball", 2000.0);
   addNode("Other", 0.0);
-  ASSERT_TRUE(camera_.setPose("Other", {{1.0, 2.0, 3.0}, {}}));
+  ASSERT_TRUE(camera_.setPose("Other", {.position = {1.0, 2.0, 3.0}}));
   ASSERT_TRUE(placeCamera(camera_, "", {}));
   EXPECT_EQ(camera_.anchor().identifier(), "Other");
   EXPECT_EQ(camera_.pose().position, glm::dvec3(1.0, 2.0, 3.0));
