@@ -4,7 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <regex>
+#include <optional>
+#include <string_view>
 
 #include <erfa.h>
 #include <fmt/format.h>
@@ -32,27 +33,112 @@ Time::JulianDate utcFromTdb(const Time::JulianDate& tdb) {
   return utc;
 }
 
+struct CalendarTime {
+  int year = 0;
+  int month = 0;
+  int day = 0;
+  int hour = 0;
+  int minute = 0;
+  double second = 0.0;
+};
+
+/// Takes text from its front, piece by piece.
+class Reader {
+ public:
+  explicit Reader(std::string_view text) : rest_(text) {}
+
+  bool take(char c) {
+    const bool there = !rest_.empty() && rest_.front() == c;
+    rest_.remove_prefix(there ? 1 : 0);
+    return there;
+  }
+  /// A number of `least` to `most` digits, without sign.
+  bool digits(std::size_t least, std::size_t most, int& number) {
+    std::size_t count = 0;
+    number = 0;
+    while (count < most && count < rest_.size() && rest_[count] >= '0' && rest_[count] <= '9') {
+      number = 10 * number + (rest_[count++] - '0');
+    }
+    rest_.remove_prefix(count);
+    return count >= least;
+  }
+  /// What follows a decimal point; 0 without one.
+  double fraction() {
+    double value = 0.0;
+    if (take('.')) {
+      for (double unit = 0.1; !rest_.empty() && rest_.front() >= '0' && rest_.front() <= '9'; unit /= 10.0) {
+        value += unit * (rest_.front() - '0');
+        rest_.remove_prefix(1);
+      }
+    }
+    return value;
+  }
+  void blanks() {
+    while (take(' ')) {
+    }
+  }
+  [[nodiscard]] bool atEnd() const { return rest_.empty(); }
+
+ private:
+  std::string_view rest_;
+};
+
+bool readTimeOfDay(Reader& reader, CalendarTime& time) {
+  if (!reader.digits(1, 2, time.hour) || !reader.take(':') || !reader.digits(2, 2, time.minute)) {
+    return false;
+  }
+  int seconds = 0;
+  if (reader.take(':')) {
+    if (!reader.digits(2, 2, seconds)) {
+      return false;
+    }
+    time.second = seconds + reader.fraction();
+  }
+  return true;
+}
+
+std::optional<CalendarTime> readCalendar(std::string_view text) {
+  Reader reader(text);
+  CalendarTime time;
+  reader.blanks();
+  const bool negative = reader.take('-');
+  if (!reader.digits(4, 5, time.year) || !reader.take('-') || !reader.digits(1, 2, time.month) || !reader.take('-') ||
+      !reader.digits(1, 2, time.day)) {
+    return std::nullopt;
+  }
+  time.year = negative ? -time.year : time.year;
+  if (reader.take('T')) {
+    if (!readTimeOfDay(reader, time)) {
+      return std::nullopt;
+    }
+  } else {
+    reader.blanks();
+    if (!reader.atEnd() && !reader.take('Z') && !readTimeOfDay(reader, time)) {
+      return std::nullopt;
+    }
+  }
+  reader.take('Z');
+  reader.blanks();
+  return reader.atEnd() ? std::optional(time) : std::nullopt;
+}
+
 }  // namespace
 
 Result<Time> Time::fromUtc(std::string_view text) {
-  static const std::regex pattern(
-      R"(\s*(-?\d{4,5})-(\d{1,2})-(\d{1,2})(?:[T ](\d{1,2}):(\d{2})(?::(\d{2}(?:\.\d*)?))?)?\s*Z?\s*)");
-  std::match_results<std::string_view::const_iterator> parts;
   const auto bad = [&](std::string_view why) {
-    return failure(fmt::format("\"{}\" is not a UTC time: {}", text, why), {}, "write it as 2026-11-22T21:17:05");
+    return failure(fmt::format("\"{}\" is not a UTC time: {}", text.substr(0, 64), why), {},
+                   "write it as 2026-11-22T21:17:05");
   };
-  if (text.size() > 64 || !std::regex_match(text.begin(), text.end(), parts, pattern)) {
+  const std::optional<CalendarTime> calendar = readCalendar(text);
+  if (!calendar) {
     return bad("it is not of the form YYYY-MM-DDThh:mm:ss");
   }
-  const auto number = [&](std::size_t i) { return parts[i].matched ? std::stod(parts[i].str()) : 0.0; };
-  const int year = static_cast<int>(number(1));
-  if (year < -4000 || year > 9999) {
+  if (calendar->year < -4000 || calendar->year > 9999) {
     return bad("the year is outside -4000..9999");
   }
   JulianDate utc{};
-  const int status =
-      eraDtf2d("UTC", year, static_cast<int>(number(2)), static_cast<int>(number(3)), static_cast<int>(number(4)),
-               static_cast<int>(number(5)), number(6), &utc.day, &utc.fraction);
+  const int status = eraDtf2d("UTC", calendar->year, calendar->month, calendar->day, calendar->hour, calendar->minute,
+                              calendar->second, &utc.day, &utc.fraction);
   if (status < 0 || status == 2 || status == 3) {
     return bad("the calendar has no such date or time of day");
   }
