@@ -178,6 +178,17 @@ void RenderableGlobe::draw(const FrameContext& frame, std::size_t view) {
   }
 }
 
+Renderable::Contents RenderableGlobe::contents() const {
+  Contents found{1, layerErrors_.size(), 0};
+  for (const LayerGroupId id : allLayerGroups) {
+    for (const auto& layer : layers_.group(id).layers()) {
+      ++found.layers;
+      found.usableLayers += layer->provider()->check() ? 1 : 0;
+    }
+  }
+  return found;
+}
+
 glm::dvec3 RenderableGlobe::cartesian(const GeodeticPosition& position) const {
   return tiling_->ellipsoid().cartesian(position);
 }

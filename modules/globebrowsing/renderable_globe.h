@@ -36,6 +36,7 @@ class RenderableGlobe final : public Renderable, public Ground {
   void draw(const FrameContext& frame, std::size_t view) override;
   [[nodiscard]] double boundingSphere() const override { return tiling_->ellipsoid().maximumRadius(); }
   [[nodiscard]] Ground* ground() override { return this; }
+  [[nodiscard]] Contents contents() const override;
 
   [[nodiscard]] glm::dvec3 radii() const override { return tiling_->ellipsoid().radii(); }
   [[nodiscard]] glm::dvec3 cartesian(const GeodeticPosition& position) const override;
