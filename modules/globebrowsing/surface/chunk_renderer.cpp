@@ -102,8 +102,7 @@ std::string ChunkRenderer::programError() const {
 }
 
 std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
-  const GLuint program = graphics_.programs().ready(drawn_);
-  if (program == 0) {
+  if (!bindForDrawing(tiles)) {
     return 0;
   }
   uniforms_.reserve(uniforms_.aligned(sizeof(ViewBlock)) + job.chunks.size() * uniforms_.aligned(sizeof(ChunkBlock)));
@@ -116,15 +115,10 @@ std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
   view.opacity = static_cast<float>(job.opacity);
   uniforms_.writeAndBind(viewBinding, view);
 
-  glUseProgram(program);
-  glEnable(GL_CULL_FACE);
   if (job.opacity < 1.0) {
     glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   }
-  glBindTextureUnit(compositeUnit, tiles.composites().composer().composites());
-  glBindSampler(compositeUnit, tiles.composites().composer().sampler());
-  tiles.surfaces().pool().bind(normalUnit);
   std::size_t drawn = 0;
   for (const SelectedChunk& chunk : job.chunks) {
     if ((chunk.views >> job.viewNumber & 1U) != 0) {
@@ -132,13 +126,30 @@ std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
       ++drawn;
     }
   }
+  unbind();
+  return drawn;
+}
+
+bool ChunkRenderer::bindForDrawing(const GlobeTiles& tiles) const {
+  const GLuint program = graphics_.programs().ready(drawn_);
+  if (program == 0) {
+    return false;
+  }
+  glUseProgram(program);
+  glEnable(GL_CULL_FACE);
+  glBindTextureUnit(compositeUnit, tiles.composites().composer().composites());
+  glBindSampler(compositeUnit, tiles.composites().composer().sampler());
+  tiles.surfaces().pool().bind(normalUnit);
+  return true;
+}
+
+void ChunkRenderer::unbind() const {
   glBindVertexArray(0);
   glBindSampler(compositeUnit, 0);
   glDisable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ZERO);
   glDisable(GL_CULL_FACE);
   glUseProgram(0);
-  return drawn;
 }
 
 void ChunkRenderer::drawChunk(const SelectedChunk& chunk, const Job& job, GlobeTiles& tiles) {
