@@ -107,7 +107,7 @@ std::string GlobeTiles::waitingFor() const {
       return reason;
     }
   }
-  return stale_ > 0 && !composites_.full() ? fmt::format("{} tiles are loading", stale_) : std::string();
+  return stale_ > 0 && !full() ? fmt::format("{} tiles are loading", stale_) : std::string();
 }
 
 }  // namespace meridian::globebrowsing

@@ -36,6 +36,10 @@ class GlobeTiles final : public TileResidency {
   [[nodiscard]] const SurfaceStore& surfaces() const { return surfaces_; }
   [[nodiscard]] CompositeStore& composites() { return composites_; }
   [[nodiscard]] const CompositeStore& composites() const { return composites_; }
+  /// Bytes of all that is in the texture pool.
+  [[nodiscard]] std::size_t residentBytes() const { return surfaces_.residentBytes() + composites_.residentBytes(); }
+  /// Whether the pool is too small for the view: what is missing then stays missing.
+  [[nodiscard]] bool full() const { return surfaces_.full() || composites_.full(); }
   /// What the tiles that were wanted in this frame still lack, or an empty string.
   [[nodiscard]] std::string waitingFor() const;
 
