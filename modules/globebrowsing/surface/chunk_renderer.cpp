@@ -126,9 +126,8 @@ std::string ChunkRenderer::programError() const {
 }
 
 std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
-  const GLuint program = graphics_.programs().ready(drawn_);
   const auto isVisible = [&](const SelectedChunk& chunk) { return (chunk.views >> job.viewNumber & 1U) != 0; };
-  if (program == 0 || std::none_of(job.chunks.begin(), job.chunks.end(), isVisible)) {
+  if (std::none_of(job.chunks.begin(), job.chunks.end(), isVisible)) {
     return 0;
   }
   ViewBlock view;
@@ -144,14 +143,12 @@ std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
   uniforms_.reserve(uniforms_.aligned(sizeof(ViewBlock)) + job.chunks.size() * uniforms_.aligned(sizeof(ChunkBlock)));
   uniforms_.writeAndBind(viewBinding, view);
 
-  glUseProgram(program);
-  glEnable(GL_CULL_FACE);
+  if (!bindForDrawing(tiles)) {
+    return 0;
+  }
   if (drawnKey_.blended) {
     enableBlending();
   }
-  glBindTextureUnit(compositeUnit, tiles.composites().composer().composites());
-  glBindSampler(compositeUnit, tiles.composites().composer().sampler());
-  tiles.surfaces().pool().bind(normalUnit);
   std::size_t drawn = 0;
   for (const SelectedChunk& chunk : job.chunks) {
     if (isVisible(chunk)) {
@@ -159,13 +156,30 @@ std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
       ++drawn;
     }
   }
+  unbind();
+  return drawn;
+}
+
+bool ChunkRenderer::bindForDrawing(const GlobeTiles& tiles) const {
+  const GLuint program = graphics_.programs().ready(drawn_);
+  if (program == 0) {
+    return false;
+  }
+  glUseProgram(program);
+  glEnable(GL_CULL_FACE);
+  glBindTextureUnit(compositeUnit, tiles.composites().composer().composites());
+  glBindSampler(compositeUnit, tiles.composites().composer().sampler());
+  tiles.surfaces().pool().bind(normalUnit);
+  return true;
+}
+
+void ChunkRenderer::unbind() const {
   glBindVertexArray(0);
   glBindSampler(compositeUnit, 0);
   glDisable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ZERO);
   glDisable(GL_CULL_FACE);
   glUseProgram(0);
-  return drawn;
 }
 
 void ChunkRenderer::drawChunk(const SelectedChunk& chunk, const Job& job, GlobeTiles& tiles) {

@@ -51,6 +51,10 @@ class ChunkRenderer {
   void endFrame() { uniforms_.endFrame(); }
   /// Draws into the bound framebuffer. How many chunks were drawn.
   std::size_t draw(const Job& job, GlobeTiles& tiles);
+  /// The program, textures and state of draw(), for drawing something else the same way; whether there is a program.
+  bool bindForDrawing(const GlobeTiles& tiles) const;
+  /// Back to the default state.
+  void unbind() const;
 
  private:
   void drawChunk(const SelectedChunk& chunk, const Job& job, GlobeTiles& tiles);

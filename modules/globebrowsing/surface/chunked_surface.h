@@ -32,7 +32,8 @@ class ChunkedSurface final : public Surface {
 
   [[nodiscard]] std::span<const SelectedChunk> selected() const { return tree_.selected(); }
   [[nodiscard]] const SelectionFigures& figures() const { return tree_.figures(); }
-  /// For benchmarks: without skirts, and the parts to draw the same with other means.
+  /// For benchmarks, which draw the same by other means.
+  [[nodiscard]] const Tiling& tiling() const { return *parts_.tiling; }
   [[nodiscard]] ChunkRenderer& renderer() { return renderer_; }
   [[nodiscard]] GlobeTiles& tiles() { return *tiles_; }
 
