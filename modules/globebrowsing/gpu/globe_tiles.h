@@ -14,6 +14,9 @@ class GlobeTiles final : public TileResidency {
  public:
   struct Options {
     std::size_t texturePoolBytes = std::size_t{512} << 20;
+    /// At least as many as one composite has layers with tiles, whatever that takes.
+    std::uint32_t leastRawTiles = 8;
+    bool operator==(const Options&) const = default;
   };
   /// Tiling, layers and streamer must outlive it. Errors: shader templates missing or wrong.
   [[nodiscard]] static Result<std::unique_ptr<GlobeTiles>> create(graphics::Graphics& graphics,
