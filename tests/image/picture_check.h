@@ -46,9 +46,10 @@ struct Verdict {
   [[nodiscard]] std::string text() const;
 };
 
-/// How far a drawn colour may leave the range of the expected colours of its pixel and those around, in levels of 255.
-/// That range allows for the half pixel by which geometry may be off; the rest is for 8-bit rasters and composites, and
-/// for minified textures, which are means over more than that neighbourhood.
+/// How far a drawn colour may leave the range of the expected colours of its pixel and those around, in levels of 255,
+/// beside a tenth of that range. The range allows for the half pixel by which geometry may be off; the rest is for
+/// 8-bit rasters and composites and for texture filtering, which near the poles of a geodetic tiling, where texels are
+/// narrow, smooths along meridians as far as it must along parallels.
 inline constexpr double colourTolerance = 6.0;
 /// Pixels from the outline where both are right.
 inline constexpr int outlineMargin = 2;
