@@ -20,7 +20,8 @@ vec4 composite(vec4 transform, float layer) {
 }
 
 void main() {
-    vec3 lit = composite(chunk.base, chunk.layers.x).rgb;
+    // Without any composite the grey that composition starts from.
+    vec3 lit = chunk.layers.x < 0.0 ? vec3(0.3) : composite(chunk.base, chunk.layers.x).rgb;
 #if SHADING
     vec3 normal = vertical;
 #if ACCURATE_NORMALS

@@ -12,6 +12,7 @@
 
 #include "globebrowsing/gpu/composer.h"
 #include "globebrowsing/gpu/composite_kind.h"
+#include "globebrowsing/gpu/opening_wait.h"
 #include "globebrowsing/gpu/slot_pool.h"
 #include "globebrowsing/layers/layer_manager.h"
 #include "globebrowsing/streaming/tile_streamer.h"
@@ -78,8 +79,12 @@ class CompositeStore {
   [[nodiscard]] const Composer& composer() const { return *composer_; }
   /// Why what is asked for is not complete, or an empty string.
   [[nodiscard]] std::string waitingFor() const;
-  /// Whether this frame asked for more composites than the pool can hold: what is missing then stays missing.
-  [[nodiscard]] bool full() const { return full_; }
+  /// Whether the last compose() had more composites to hold than the pool can: what is missing then stays missing.
+  [[nodiscard]] bool full() const { return unplaced_ > 0; }
+  /// Bytes of the composites and raw tiles that are there.
+  [[nodiscard]] std::size_t residentBytes() const {
+    return slots_.used() * Composer::bytesPerComposite() + composer_->rawTileBytes();
+  }
 
  private:
   /// What is known of a tile's colours as long as no layer changes.
@@ -100,7 +105,9 @@ class CompositeStore {
   State wantComposite(const CompositeKey& key, double priority);
   [[nodiscard]] State stateOf(const CompositeKey& key) const;
   bool gather(const CompositeKey& key, double priority);
-  bool composeOne(const Request& request);
+  enum class Composed { Done, NoSlot, NoRawTiles };
+  Composed composeOne(const Request& request);
+  void tellFull();
 
   std::shared_ptr<const Tiling> tiling_;
   LayerManager& layers_;
@@ -109,14 +116,15 @@ class CompositeStore {
   SlotPool<CompositeKey> slots_;
   std::vector<std::uint64_t> slotVersions_;  ///< of what each slot's composite was made from
   std::array<std::uint64_t, compositeKindCount> versions_{};
+  std::array<OpeningWait, compositeKindCount> openings_;
   mutable std::unordered_map<TileIndex, Facts> facts_;
   std::vector<Request> requests_;
   std::vector<CompositionPart> parts_;
   std::vector<TileDataPointer> held_;  ///< the raw tiles of parts_
   std::uint64_t frame_ = 0;
-  bool full_ = false;
   bool toldFull_ = false;
-  std::size_t missing_ = 0;
+  std::size_t missing_ = 0;   ///< composites wanted in this frame that are not current
+  std::size_t unplaced_ = 0;  ///< of these, those that have their raw tiles but no room
 };
 
 }  // namespace meridian::globebrowsing

@@ -1,6 +1,7 @@
 #include "globebrowsing/surface/chunk_renderer.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <glm/mat3x3.hpp>
@@ -23,8 +24,26 @@ std::string defines(const ChunkProgramKey& key) {
       int{key.shading}, int{key.accurateNormals}, int{key.night}, int{key.overlay}, int{key.edges});
 }
 
+void enableBlending() {
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+}
+
+/// A camera that is not a number never reaches the GPU.
+bool isFinite(const ViewBlock& view) {
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      if (!std::isfinite(view.clipFromRelative[column][row])) {
+        return false;
+      }
+    }
+  }
+  const glm::vec3& light = view.lightDirection;
+  return std::isfinite(light.x) && std::isfinite(light.y) && std::isfinite(light.z);
+}
+
 /// Draws one triangle as chunks are drawn, with textures, vertices and a target of its own.
-void warmChunks(GLuint program) {
+void warmChunks(GLuint program, bool blended) {
   constexpr int size = 24;
   const graphics::Texture composites = graphics::Texture::array2D(GL_RGBA8, size, size, 2, Composer::levelCount);
   const graphics::Texture normals = graphics::Texture::array2D(SurfacePool::normalFormat, size, size, 2);
@@ -53,6 +72,9 @@ void warmChunks(GLuint program) {
   const float far = 0.0F;
   glClearNamedFramebufferfv(framebuffer.id(), GL_DEPTH, 0, &far);
   glEnable(GL_CULL_FACE);
+  if (blended) {
+    enableBlending();
+  }
   glBindTextureUnit(compositeUnit, composites.id());
   glBindSampler(compositeUnit, sampler.id());
   glBindTextureUnit(normalUnit, normals.id());
@@ -66,8 +88,9 @@ void warmChunks(GLuint program) {
 }  // namespace
 
 std::string ChunkProgramKey::text() const {
-  return fmt::format("chunks{}{}{}{}{}", shading ? " shading" : "", accurateNormals ? " normals" : "",
-                     night ? " night" : "", overlay ? " overlay" : "", edges ? " edges" : "");
+  return fmt::format("chunks{}{}{}{}{}{}", shading ? " shading" : "", accurateNormals ? " normals" : "",
+                     night ? " night" : "", overlay ? " overlay" : "", edges ? " edges" : "",
+                     blended ? " blended" : "");
 }
 
 ChunkRenderer::ChunkRenderer(graphics::Graphics& graphics)
@@ -92,7 +115,8 @@ Result<void> ChunkRenderer::setProgram(const ChunkProgramKey& key) {
     return tl::make_unexpected(fragment.error());
   }
   key_ = key;
-  wanted_ = graphics_.programs().request({key.text(), *std::move(vertex), *std::move(fragment), warmChunks});
+  const auto warm = [blended = key.blended](GLuint program) { warmChunks(program, blended); };
+  wanted_ = graphics_.programs().request({key.text(), *std::move(vertex), *std::move(fragment), warm});
   return {};
 }
 
@@ -102,10 +126,10 @@ std::string ChunkRenderer::programError() const {
 }
 
 std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
-  if (!bindForDrawing(tiles)) {
+  const auto isVisible = [&](const SelectedChunk& chunk) { return (chunk.views >> job.viewNumber & 1U) != 0; };
+  if (std::none_of(job.chunks.begin(), job.chunks.end(), isVisible)) {
     return 0;
   }
-  uniforms_.reserve(uniforms_.aligned(sizeof(ViewBlock)) + job.chunks.size() * uniforms_.aligned(sizeof(ChunkBlock)));
   ViewBlock view;
   // Positions reach the shader relative to the eye, so only the rotation of cameraFromModel is left to apply.
   const glm::dmat4 rotation(glm::dmat3(job.view->cameraFromModel));
@@ -113,15 +137,21 @@ std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
   view.lightDirection = glm::vec3(job.view->lightDirection);
   view.ambient = static_cast<float>(job.ambient);
   view.opacity = static_cast<float>(job.opacity);
+  if (!isFinite(view)) {
+    return 0;
+  }
+  uniforms_.reserve(uniforms_.aligned(sizeof(ViewBlock)) + job.chunks.size() * uniforms_.aligned(sizeof(ChunkBlock)));
   uniforms_.writeAndBind(viewBinding, view);
 
-  if (job.opacity < 1.0) {
-    glEnable(GL_BLEND);
-    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  if (!bindForDrawing(tiles)) {
+    return 0;
+  }
+  if (drawnKey_.blended) {
+    enableBlending();
   }
   std::size_t drawn = 0;
   for (const SelectedChunk& chunk : job.chunks) {
-    if ((chunk.views >> job.viewNumber & 1U) != 0) {
+    if (isVisible(chunk)) {
       drawChunk(chunk, job, tiles);
       ++drawn;
     }

@@ -20,6 +20,7 @@ struct ChunkProgramKey {
   bool night = false;
   bool overlay = false;
   bool edges = false;
+  bool blended = false;  ///< not in the text: drivers make other machine code for it
 
   [[nodiscard]] std::string text() const;
   bool operator==(const ChunkProgramKey&) const = default;
