@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <optional>
 #include <vector>
 
@@ -134,7 +135,7 @@ SurfaceFigures measureSurface(SettledGlobe& globe, glm::ivec2 size) {
     const auto segments = static_cast<std::size_t>(chunk_grid::segmentsAt(chunk.step));
     ++figures.chunks;
     figures.triangles += 2 * segments * segments;
-    figures.skirtTriangles += 8 * segments;
+    figures.skirtTriangles += 2 * segments * static_cast<std::size_t>(std::popcount(chunk.skirtEdges));
     if (const ChunkSurface* surface = globe.surface().tiles().surfaces().find(chunk.index)) {
       figures.errorPixels = std::max(figures.errorPixels, errorOf(chunk, *surface, globe.surface().tiling(), view));
     }

@@ -30,6 +30,7 @@ struct ChunkNode {
   bool bounded = false;
   bool hasNeighbours = false;
   std::array<TileIndex, 4> neighbours{};
+  std::array<Edge, 4> neighbourEdges{};  ///< of the neighbours, that lie along this node's
   std::array<bool, 4> hasNeighbour{};
 };
 

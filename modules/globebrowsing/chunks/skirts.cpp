@@ -6,6 +6,14 @@
 
 namespace meridian::globebrowsing {
 
+namespace {
+
+std::uint8_t bitOf(Edge edge) {
+  return static_cast<std::uint8_t>(1U << static_cast<unsigned>(edge));
+}
+
+}  // namespace
+
 SkirtFitter::Slot& SkirtFitter::slotOf(const TileIndex& index) {
   const std::size_t mask = slots_.size() - 1;
   std::size_t place = std::hash<TileIndex>()(index) & mask;
@@ -73,6 +81,7 @@ void SkirtFitter::fit(const Tiling& tiling, NodePool& pool, const TileResidency&
         const std::optional<Neighbour> neighbour = tiling.neighbour(node.index, allEdges[edge]);
         node.hasNeighbour[edge] = neighbour.has_value();
         node.neighbours[edge] = neighbour ? neighbour->index : TileIndex{};
+        node.neighbourEdges[edge] = neighbour ? neighbour->edge : Edge::West;
       }
       node.hasNeighbours = true;
     }
@@ -81,13 +90,20 @@ void SkirtFitter::fit(const Tiling& tiling, NodePool& pool, const TileResidency&
       if (slot == nullptr) {
         continue;
       }
+      const std::uint8_t bit = bitOf(static_cast<Edge>(edge));
       if (slot->chunk == interior) {
+        chunk.skirtEdges |= bit;
         // Twice: a chunk's error at 32 segments is at most its error as drawn.
         chunk.skirt = std::max(chunk.skirt, 2.0 * slot->error);
         continue;
       }
       SelectedChunk& other = drawn.chunks[static_cast<std::size_t>(slot->chunk)];
       const bool unequal = other.index.level != chunk.index.level;
+      if (!unequal && other.step == chunk.step) {
+        continue;
+      }
+      chunk.skirtEdges |= bit;
+      other.skirtEdges |= bitOf(node.neighbourEdges[edge]);
       const double relief = unequal ? residency.geometricError(other.index, 4) : 0.0;
       chunk.skirt = std::max(chunk.skirt, other.error + relief);
       other.skirt = std::max(other.skirt, chunk.error + relief);

@@ -19,10 +19,12 @@ SurfacePool::SurfacePool(std::uint32_t capacity)
                                           static_cast<int>(capacity))) {
   std::vector<std::uint16_t> all;
   for (int step = 0; step < chunk_grid::steps; ++step) {
-    const std::vector<std::uint16_t> indices = chunk_grid::indices(step);
-    firstElement_[static_cast<std::size_t>(step)] = all.size() * sizeof(std::uint16_t);
-    elementCount_[static_cast<std::size_t>(step)] = static_cast<int>(indices.size());
-    all.insert(all.end(), indices.begin(), indices.end());
+    for (unsigned edges = 0; edges < chunk_grid::edgeSets; ++edges) {
+      const std::vector<std::uint16_t> indices = chunk_grid::indices(step, edges);
+      ranges_[static_cast<std::size_t>(step)][edges] = {all.size() * sizeof(std::uint16_t),
+                                                        static_cast<int>(indices.size())};
+      all.insert(all.end(), indices.begin(), indices.end());
+    }
   }
   elements_ = graphics::Buffer(static_cast<GLsizeiptr>(all.size() * sizeof(std::uint16_t)), all.data(), 0);
   describeVertices(vertexArray_.id(), vertices_.id());
@@ -51,18 +53,11 @@ void SurfacePool::bind(GLuint normalUnit) const {
   glBindTextureUnit(normalUnit, normals_.id());
 }
 
-void SurfacePool::draw(std::uint32_t slot, int step) const {
-  drawElements(slot, step, elementCount_[static_cast<std::size_t>(step)]);
-}
-
-void SurfacePool::drawGrid(std::uint32_t slot, int step) const {
-  drawElements(slot, step, chunk_grid::gridIndexCount(step));
-}
-
-void SurfacePool::drawElements(std::uint32_t slot, int step, int count) const {
+void SurfacePool::draw(std::uint32_t slot, int step, unsigned skirtEdges) const {
+  const Elements& range = ranges_[static_cast<std::size_t>(step)][skirtEdges];
   // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL takes the offset as a pointer.
-  const auto* first = reinterpret_cast<const void*>(firstElement_[static_cast<std::size_t>(step)]);
-  glDrawElementsBaseVertex(GL_TRIANGLES, count, GL_UNSIGNED_SHORT, first,
+  const auto* first = reinterpret_cast<const void*>(range.firstByte);
+  glDrawElementsBaseVertex(GL_TRIANGLES, range.count, GL_UNSIGNED_SHORT, first,
                            static_cast<GLint>(slot) * chunk_grid::vertexCount);
 }
 

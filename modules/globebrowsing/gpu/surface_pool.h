@@ -29,25 +29,25 @@ class SurfacePool {
 
   /// The vertex array and the element buffer of all densities.
   void bind(GLuint normalUnit) const;
-  /// Draws the chunk in that slot with the vertex array bound; `step` 0..4.
-  void draw(std::uint32_t slot, int step) const;
-  /// The same without its skirts.
-  void drawGrid(std::uint32_t slot, int step) const;
+  /// Draws the chunk in that slot with the vertex array bound; `step` 0..4, skirts on the edges of `skirtEdges`.
+  void draw(std::uint32_t slot, int step, unsigned skirtEdges) const;
 
   /// The vertex layout alone, for warm-up draws on another context.
   static void describeVertices(GLuint vertexArray, GLuint vertexBuffer);
   static constexpr GLenum normalFormat = GL_RGBA8;
 
  private:
-  void drawElements(std::uint32_t slot, int step, int count) const;
-
   SlotPool<TileIndex> slots_;
   graphics::Buffer vertices_;
   graphics::Buffer elements_;
   graphics::VertexArray vertexArray_;
   graphics::Texture normals_;
-  std::array<std::size_t, chunk_grid::steps> firstElement_{};
-  std::array<int, chunk_grid::steps> elementCount_{};
+  /// A density with skirts on some edges: where its indices are in elements_.
+  struct Elements {
+    std::size_t firstByte = 0;
+    int count = 0;
+  };
+  std::array<std::array<Elements, chunk_grid::edgeSets>, chunk_grid::steps> ranges_{};
 };
 
 }  // namespace meridian::globebrowsing

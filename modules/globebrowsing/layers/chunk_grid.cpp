@@ -42,7 +42,7 @@ Place place(int vertex) {
   return edgePlace;
 }
 
-std::vector<std::uint16_t> indices(int step) {
+std::vector<std::uint16_t> indices(int step, unsigned edges) {
   const int stride = segments / segmentsAt(step);
   std::vector<std::uint16_t> out;
   out.reserve(static_cast<std::size_t>(gridIndexCount(step) + 4 * 6 * segmentsAt(step)));
@@ -56,6 +56,9 @@ std::vector<std::uint16_t> indices(int step) {
     }
   }
   for (int edge = 0; edge < 4; ++edge) {
+    if ((edges >> static_cast<unsigned>(edge) & 1U) == 0) {
+      continue;
+    }
     // Going south along the west edge, the outside is to the right; likewise going west-to-east along the south one.
     const bool outsideOnRight = edge == 0 || edge == 3;
     for (int along = 0; along < segments; along += stride) {

@@ -34,7 +34,9 @@ struct Place {
 [[nodiscard]] Place place(int vertex);
 
 /// Triangles, counter-clockwise seen from outside: first the grid's, then the skirts', which face away from the chunk.
-[[nodiscard]] std::vector<std::uint16_t> indices(int step);
+/// `edges`: bits 0..3 for the skirts of the west, east, north and south edge.
+[[nodiscard]] std::vector<std::uint16_t> indices(int step, unsigned edges);
+inline constexpr unsigned edgeSets = 16;
 /// How many of the indices are the grid's.
 [[nodiscard]] constexpr int gridIndexCount(int step) {
   return 6 * segmentsAt(step) * segmentsAt(step);

@@ -138,11 +138,7 @@ void ChunkRenderer::drawChunk(const SelectedChunk& chunk, const Job& job, GlobeT
   block.level = static_cast<float>(chunk.index.level);
   block.normalScale = static_cast<float>(surface->normalScale());
   uniforms_.writeAndBind(chunkBlock, block);
-  if (job.skirts) {
-    tiles.surfaces().pool().draw(*slot, chunk.step);
-  } else {
-    tiles.surfaces().pool().drawGrid(*slot, chunk.step);
-  }
+  tiles.surfaces().pool().draw(*slot, chunk.step, job.skirts ? chunk.skirtEdges : 0U);
 }
 
 }  // namespace meridian::globebrowsing

@@ -117,7 +117,7 @@ TEST(ChunkSurface, NeighboursAgreeOnTheirSharedEdgeToTheBit) {
 
 TEST(ChunkGrid, EveryDensityCoversTheTileOnceAndFacesOutwards) {
   for (int step = 0; step < chunk_grid::steps; ++step) {
-    const std::vector<std::uint16_t> indices = chunk_grid::indices(step);
+    const std::vector<std::uint16_t> indices = chunk_grid::indices(step, 0xF);
     double area = 0.0;
     for (int i = 0; i < chunk_grid::gridIndexCount(step); i += 3) {
       const auto corner = [&](int n) {
@@ -135,7 +135,7 @@ TEST(ChunkGrid, EveryDensityCoversTheTileOnceAndFacesOutwards) {
 }
 
 TEST(ChunkGrid, SkirtsFaceAwayFromTheTile) {
-  const std::vector<std::uint16_t> indices = chunk_grid::indices(0);
+  const std::vector<std::uint16_t> indices = chunk_grid::indices(0, 0xF);
   for (std::size_t i = static_cast<std::size_t>(chunk_grid::gridIndexCount(0)); i < indices.size(); i += 3) {
     const auto corner = [&](std::size_t n) {
       const chunk_grid::Place p = chunk_grid::place(indices[i + n]);
@@ -144,6 +144,21 @@ TEST(ChunkGrid, SkirtsFaceAwayFromTheTile) {
     const glm::dvec3 normal = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
     const glm::dvec3 middle = (corner(0) + corner(1) + corner(2)) / 3.0;
     EXPECT_GT(glm::dot(normal, glm::dvec3(middle.x - 0.5, middle.y + 0.5, 0.0)), 0.0);
+  }
+}
+
+TEST(ChunkGrid, OnlyTheEdgesAskedForHaveSkirts) {
+  for (unsigned edges = 0; edges < chunk_grid::edgeSets; ++edges) {
+    const std::vector<std::uint16_t> indices = chunk_grid::indices(1, edges);
+    std::array<int, 4> feet{};
+    for (const std::uint16_t index : indices) {
+      if (index >= chunk_grid::gridVertices) {
+        ++feet[static_cast<std::size_t>((index - chunk_grid::gridVertices) / chunk_grid::side)];
+      }
+    }
+    for (unsigned edge = 0; edge < 4; ++edge) {
+      EXPECT_EQ(feet[edge] > 0, (edges >> edge & 1U) != 0) << "edges " << edges << ", edge " << edge;
+    }
   }
 }
 
