@@ -90,7 +90,7 @@ void FloorDraw::makeBlocks() {
   chunk.corners.fill(glm::vec4(0.0F));
   const SelectedChunk& nearest = globe_.surface().selected().front();
   for (const CompositeKind kind : allCompositeKinds) {
-    if (const auto placement = globe_.surface().tiles().composites().place(kind, nearest.index)) {
+    if (const auto placement = globe_.surface().tiles().composites().place(kind, nearest.index, nearest.colourLevel)) {
       const float border = static_cast<float>(colourLayout.border) / static_cast<float>(colourLayout.size());
       const float interior = static_cast<float>(colourLayout.interior) / static_cast<float>(colourLayout.size());
       chunk.composites[static_cast<std::size_t>(kind)] = {border, border, interior, interior};

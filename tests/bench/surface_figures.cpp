@@ -30,7 +30,8 @@ std::optional<glm::dvec2> onScreen(const View& view, const glm::dvec3& position)
   return glm::dvec2(clip.x, clip.y) / clip.w * 0.5 * glm::dvec2(view.size);
 }
 
-/// The largest distance on screen between the chunk's triangles and the nodes of a grid four times denser.
+/// The largest distance on screen, along the vertical, between the chunk's triangles and the nodes of a grid four times
+/// denser. (Along the surface triangles shift nothing but texels, near the poles by as much again.)
 double errorOf(const SelectedChunk& chunk, const ChunkSurface& surface, const Tiling& tiling, const View& view) {
   const int segments = chunk_grid::segmentsAt(chunk.step);
   const int fine = std::min(4 * segments, ChunkSurface::nodes - 1);
@@ -53,8 +54,11 @@ double errorOf(const SelectedChunk& chunk, const ChunkSurface& surface, const Ti
           const double a = static_cast<double>(i) / stride;
           const double b = static_cast<double>(j) / stride;
           const glm::dvec3 drawn = nw + (a <= b ? (sw - nw) * b + (se - sw) * a : (ne - nw) * a + (se - ne) * b);
-          const glm::dvec3 exact = node(column + i, row + j);
-          const bool faces = glm::dot(view.cameraPosition - exact, exact) > 0.0;
+          const GeodeticPosition place = tiling.geodetic(
+              chunk.index, {static_cast<double>(column + i) / fine, static_cast<double>(row + j) / fine});
+          const glm::dvec3 vertical = tiling.ellipsoid().normal(place.latitude, place.longitude);
+          const glm::dvec3 exact = drawn + vertical * glm::dot(node(column + i, row + j) - drawn, vertical);
+          const bool faces = glm::dot(view.cameraPosition - exact, vertical) > 0.0;
           const auto from = onScreen(view, drawn);
           const auto to = onScreen(view, exact);
           if (faces && from && to) {

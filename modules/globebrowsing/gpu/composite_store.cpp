@@ -113,8 +113,8 @@ bool CompositeStore::hasFiner(const TileIndex& index) const {
   return facts(index).finer;
 }
 
-TileIndex CompositeStore::owner(CompositeKind kind, const TileIndex& index) const {
-  const int level = facts(index).ownerLevel[static_cast<std::size_t>(kind)];
+TileIndex CompositeStore::owner(CompositeKind kind, const TileIndex& index, int colourLevel) const {
+  const int level = std::min<int>(colourLevel, facts(index).ownerLevel[static_cast<std::size_t>(kind)]);
   TileIndex found = index;
   while (found.level > level) {
     found = *tiling_->parent(found);
@@ -127,22 +127,22 @@ CompositeStore::State CompositeStore::stateOf(const CompositeKey& key) const {
   return {slot.has_value(), slot && slotVersions_[*slot] == versions_[static_cast<std::size_t>(key.kind)]};
 }
 
-CompositeStore::State CompositeStore::state(const TileIndex& index) const {
+CompositeStore::State CompositeStore::state(const TileIndex& index, int colourLevel) const {
   State all;
   for (const CompositeKind kind : allCompositeKinds) {
     if (inUse(kind)) {
-      const State one = stateOf({kind, owner(kind, index)});
+      const State one = stateOf({kind, owner(kind, index, colourLevel)});
       all = {all.present && one.present, all.current && one.current};
     }
   }
   return all;
 }
 
-CompositeStore::State CompositeStore::want(const TileIndex& index, double priority) {
+CompositeStore::State CompositeStore::want(const TileIndex& index, int colourLevel, double priority) {
   State all;
   for (const CompositeKind kind : allCompositeKinds) {
     if (inUse(kind)) {
-      const State one = wantComposite({kind, owner(kind, index)}, priority);
+      const State one = wantComposite({kind, owner(kind, index, colourLevel)}, priority);
       all = {all.present && one.present, all.current && one.current};
     }
   }
@@ -197,10 +197,10 @@ bool CompositeStore::gather(const CompositeKey& key, double priority) {
   return all;
 }
 
-void CompositeStore::keep(const TileIndex& index) {
+void CompositeStore::keep(const TileIndex& index, int colourLevel) {
   for (const CompositeKind kind : allCompositeKinds) {
     if (inUse(kind)) {
-      slots_.use({kind, owner(kind, index)}, frame_);
+      slots_.use({kind, owner(kind, index, colourLevel)}, frame_);
     }
   }
 }
@@ -247,10 +247,11 @@ CompositeStore::Composed CompositeStore::composeOne(const Request& request) {
   return Composed::Done;
 }
 
-std::optional<CompositeStore::Placement> CompositeStore::place(CompositeKind kind, const TileIndex& index) {
+std::optional<CompositeStore::Placement> CompositeStore::place(CompositeKind kind, const TileIndex& index,
+                                                               int colourLevel) {
   UnitSquareTransform transform;
   TileIndex at = index;
-  const int ownerLevel = facts(index).ownerLevel[static_cast<std::size_t>(kind)];
+  const int ownerLevel = std::min<int>(colourLevel, facts(index).ownerLevel[static_cast<std::size_t>(kind)]);
   while (true) {
     if (at.level <= ownerLevel) {
       // What this frame draws must still be there when the next composes, or chunks without a composite would flicker.

@@ -55,11 +55,11 @@ class CompositeStore {
     bool present = true;  ///< every kind in use has the tile's own composite, if only of an earlier setting
     bool current = true;  ///< and they are of the present structure and settings
   };
-  /// Asks for what the tile's colours lack.
-  State want(const TileIndex& index, double priority);
+  /// Asks for what the tile's colours lack; it draws composites of at most that level.
+  State want(const TileIndex& index, int colourLevel, double priority);
   /// The same without asking.
-  [[nodiscard]] State state(const TileIndex& index) const;
-  void keep(const TileIndex& index);
+  [[nodiscard]] State state(const TileIndex& index, int colourLevel) const;
+  void keep(const TileIndex& index, int colourLevel);
   /// Composes what has all its raw tiles, greatest priority first, for about that long; at least one each frame.
   /// Drivers draw later than they are told, so the time is reckoned from the texels, not measured.
   void compose(double milliseconds);
@@ -72,7 +72,7 @@ class CompositeStore {
     std::uint32_t slot = 0;
     glm::vec4 transform{0.0F};  ///< texture coordinate = xy + zw * unit square of the chunk
   };
-  [[nodiscard]] std::optional<Placement> place(CompositeKind kind, const TileIndex& index);
+  [[nodiscard]] std::optional<Placement> place(CompositeKind kind, const TileIndex& index, int colourLevel);
 
   /// Whether any enabled layer is of that kind; Base always is in use.
   [[nodiscard]] bool inUse(CompositeKind kind) const;
@@ -101,7 +101,7 @@ class CompositeStore {
 
   [[nodiscard]] const Facts& facts(const TileIndex& index) const;
   [[nodiscard]] bool anyFiner(CompositeKind kind, const TileIndex& index) const;
-  [[nodiscard]] TileIndex owner(CompositeKind kind, const TileIndex& index) const;
+  [[nodiscard]] TileIndex owner(CompositeKind kind, const TileIndex& index, int colourLevel) const;
   State wantComposite(const CompositeKey& key, double priority);
   [[nodiscard]] State stateOf(const CompositeKey& key) const;
   bool gather(const CompositeKey& key, double priority);

@@ -57,24 +57,24 @@ void GlobeTiles::process(graphics::UploadBudget& uploads, double compositionMill
   composites_.endFrame();
 }
 
-void GlobeTiles::want(const TileIndex& index, double priority) {
+void GlobeTiles::want(const TileIndex& index, int colourLevel, double priority) {
   const bool shaped = surfaces_.want(index, priority);
-  const bool coloured = composites_.want(index, priority).current;
+  const bool coloured = composites_.want(index, colourLevel, priority).current;
   stale_ += shaped && coloured ? 0 : 1;
 }
 
-void GlobeTiles::keep(const TileIndex& index) {
+void GlobeTiles::keep(const TileIndex& index, int colourLevel) {
   surfaces_.keep(index);
-  composites_.keep(index);
+  composites_.keep(index, colourLevel);
 }
 
-TileResidency::State GlobeTiles::state(const TileIndex& index) const {
+TileResidency::State GlobeTiles::state(const TileIndex& index, int colourLevel) const {
   if (surfaces_.find(index) == nullptr) {
     return State::Nothing;
   }
   // Colours of an earlier setting count: they are exchanged in place, and must not make the tree draw something
   // coarser.
-  return composites_.state(index).present || composites_.full() ? State::Complete : State::Drawable;
+  return composites_.state(index, colourLevel).present || composites_.full() ? State::Complete : State::Drawable;
 }
 
 HeightRange GlobeTiles::heightRange(const TileIndex& index) const {

@@ -28,9 +28,9 @@ class GlobeTiles final : public TileResidency {
   /// Uploads and composes under the frame's budgets. After selection.
   void process(graphics::UploadBudget& uploads, double compositionMilliseconds);
 
-  void want(const TileIndex& index, double priority) override;
-  void keep(const TileIndex& index) override;
-  [[nodiscard]] State state(const TileIndex& index) const override;
+  void want(const TileIndex& index, int colourLevel, double priority) override;
+  void keep(const TileIndex& index, int colourLevel) override;
+  [[nodiscard]] State state(const TileIndex& index, int colourLevel) const override;
   [[nodiscard]] HeightRange heightRange(const TileIndex& index) const override;
   [[nodiscard]] unsigned heightVersion(const TileIndex& index) const override;
   [[nodiscard]] double geometricError(const TileIndex& index, int step) const override;

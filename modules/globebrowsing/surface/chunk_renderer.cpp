@@ -198,7 +198,7 @@ void ChunkRenderer::drawChunk(const SelectedChunk& chunk, const Job& job, GlobeT
     if (!used[i]) {
       continue;
     }
-    if (const auto placement = tiles.composites().place(kind, chunk.index)) {
+    if (const auto placement = tiles.composites().place(kind, chunk.index, chunk.colourLevel)) {
       block.composites[i] = placement->transform;
       block.layers[static_cast<int>(i)] = static_cast<float>(placement->slot);
     }
