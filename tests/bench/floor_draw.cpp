@@ -33,23 +33,23 @@ double fold(double tiles) {
 
 }  // namespace
 
-FloorDraw::FloorDraw(SettledGlobe& globe, glm::ivec2 size, std::size_t triangles, std::size_t pixels)
-    : globe_(globe), size_(size), vertexArray_(graphics::VertexArray::create()) {
-  makeGrid(triangles, pixels);
+FloorDraw::FloorDraw(SettledGlobe& globe, glm::ivec2 size, const SurfaceFigures& figures)
+    : globe_(globe), size_(size), vertexArray_(graphics::VertexArray::create()), night_(figures.mostlyNight) {
+  makeGrid(figures);
   makeBlocks();
 }
 
-void FloorDraw::makeGrid(std::size_t triangles, std::size_t pixels) {
-  const double share = std::sqrt(static_cast<double>(pixels) / (static_cast<double>(size_.x) * size_.y));
+void FloorDraw::makeGrid(const SurfaceFigures& figures) {
+  const double share = std::sqrt(static_cast<double>(figures.coveredPixels) / (static_cast<double>(size_.x) * size_.y));
   const glm::dvec2 extent = glm::dvec2(size_) * share;
-  const double cells = static_cast<double>(triangles) / 2.0;
+  const double cells = static_cast<double>(figures.triangles + figures.skirtTriangles) / 2.0;
   const int columns = std::max(1, static_cast<int>(std::lround(std::sqrt(cells * extent.x / extent.y))));
   const int rows = std::max(1, static_cast<int>(std::lround(cells / columns)));
   std::vector<FloorVertex> vertices;
   for (int row = 0; row <= rows; ++row) {
     for (int column = 0; column <= columns; ++column) {
       const glm::dvec2 part(static_cast<double>(column) / columns, static_cast<double>(row) / rows);
-      const glm::dvec2 tiles = part * extent / double{colourLayout.interior};
+      const glm::dvec2 tiles = part * extent * figures.texelsPerPixel / double{colourLayout.interior};
       vertices.push_back(
           {{static_cast<float>((2.0 * part.x - 1.0) * share), static_cast<float>((2.0 * part.y - 1.0) * share), 0.5F},
            0.0F,
@@ -107,7 +107,7 @@ double FloorDraw::frame() {
   renderer.beginFrame();
   renderer.target().bind();
   renderer.target().clear({0.0F, 0.0F, 0.0F, 1.0F});
-  globe_.surface().renderer().bindForDrawing(globe_.surface().tiles());
+  globe_.surface().renderer().bindForDrawing(globe_.surface().tiles(), night_);
   glBindVertexArray(vertexArray_.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, viewBlock_.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, 1, chunkBlock_.id());

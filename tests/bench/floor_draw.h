@@ -1,8 +1,7 @@
 #pragma once
 
-#include <cstddef>
-
 #include "settled_globe.h"
+#include "surface_figures.h"
 
 namespace meridian::bench {
 
@@ -10,13 +9,13 @@ namespace meridian::bench {
 /// own program, array textures, texel density, target, depth format and blit.
 class FloorDraw {
  public:
-  FloorDraw(SettledGlobe& globe, glm::ivec2 size, std::size_t triangles, std::size_t pixels);
+  FloorDraw(SettledGlobe& globe, glm::ivec2 size, const SurfaceFigures& figures);
 
   /// Draws it and waits for it; milliseconds.
   double frame();
 
  private:
-  void makeGrid(std::size_t triangles, std::size_t pixels);
+  void makeGrid(const SurfaceFigures& figures);
   void makeBlocks();
 
   SettledGlobe& globe_;
@@ -27,6 +26,7 @@ class FloorDraw {
   graphics::Buffer viewBlock_;
   graphics::Buffer chunkBlock_;
   int elementCount_ = 0;
+  bool night_ = false;
 };
 
 }  // namespace meridian::bench

@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   const bench::SurfaceFigures figures = bench::measureSurface(**globe, size);
-  bench::FloorDraw floor(**globe, size, figures.triangles + figures.skirtTriangles, figures.coveredPixels);
+  bench::FloorDraw floor(**globe, size, figures);
   // The floor's vertex layout is a variant of its own, compiled at its first draw.
   floor.frame();
   (*globe)->frame();
@@ -59,10 +59,11 @@ int main(int argc, char** argv) {
   }
   fmt::print(
       "{{\"ratio\": {:.4f}, \"frame_ms\": {:.3f}, \"floor_ms\": {:.3f}, \"chunks\": {}, \"triangles\": {}, "
-      "\"skirt_triangles\": {}, \"covered_pixels\": {}, \"pixels_per_triangle\": {:.2f}, \"error_pixels\": {:.4f}}}\n",
+      "\"skirt_triangles\": {}, \"covered_pixels\": {}, \"pixels_per_triangle\": {:.2f}, \"texels_per_pixel\": {:.3f}, "
+      "\"night\": {}, \"error_pixels\": {:.4f}}}\n",
       median(own) / median(least), median(own), median(least), figures.chunks, figures.triangles,
       figures.skirtTriangles, figures.coveredPixels,
       static_cast<double>(figures.coveredPixels) / static_cast<double>(std::max<std::size_t>(figures.triangles, 1)),
-      figures.errorPixels);
+      figures.texelsPerPixel, figures.mostlyNight, figures.errorPixels);
   return 0;
 }

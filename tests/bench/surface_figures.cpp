@@ -6,7 +6,12 @@
 #include <vector>
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
+
+#include "globebrowsing/source/tile_layout.h"
 
 namespace meridian::bench {
 
@@ -71,6 +76,52 @@ double errorOf(const SelectedChunk& chunk, const ChunkSurface& surface, const Ti
   return largest;
 }
 
+/// Where in the picture (-1..1) a ray meets the surface: texel coordinates within the composite that is drawn there.
+std::optional<glm::dvec2> texelAt(SettledGlobe& globe, const View& view, const glm::dvec2& clip) {
+  const glm::dvec4 ahead = glm::inverse(view.clipFromCamera) * glm::dvec4(clip, 0.5, 1.0);
+  const glm::dmat3 modelFromCamera = glm::transpose(glm::dmat3(view.cameraFromModel));
+  const auto hit = globe.surface().pick(view.cameraPosition, modelFromCamera * (glm::dvec3(ahead) / ahead.w));
+  if (!hit) {
+    return std::nullopt;
+  }
+  const Tiling& tiling = globe.surface().tiling();
+  const GeodeticPosition position = tiling.ellipsoid().geodetic(*hit);
+  for (const SelectedChunk& chunk : globe.surface().selected()) {
+    const TilePlace place = tiling.locate(position.latitude, position.longitude, chunk.index.level);
+    if (place.index == chunk.index) {
+      const auto drawn =
+          globe.surface().tiles().composites().place(CompositeKind::Base, chunk.index, chunk.colourLevel);
+      return drawn ? std::optional(glm::dvec2(drawn->transform.z, drawn->transform.w) * place.uv *
+                                   double{colourLayout.size()})
+                   : std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+double texelsPerPixel(SettledGlobe& globe, const View& view) {
+  const glm::dvec2 pixel = 2.0 / glm::dvec2(view.size);
+  std::vector<double> found;
+  for (int row = -4; row <= 4; ++row) {
+    for (int column = -4; column <= 4; ++column) {
+      const glm::dvec2 clip(column / 4.5, row / 4.5);
+      const auto here = texelAt(globe, view, clip);
+      const auto right = texelAt(globe, view, clip + glm::dvec2(pixel.x, 0.0));
+      const auto above = texelAt(globe, view, clip + glm::dvec2(0.0, pixel.y));
+      if (here && right && above) {
+        const glm::dvec2 a = *right - *here;
+        const glm::dvec2 b = *above - *here;
+        found.push_back(std::sqrt(std::abs(a.x * b.y - a.y * b.x)));
+      }
+    }
+  }
+  if (found.empty()) {
+    return 1.0;
+  }
+  std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2), found.end());
+  return found[found.size() / 2];
+}
+
 }  // namespace
 
 SurfaceFigures measureSurface(SettledGlobe& globe, glm::ivec2 size) {
@@ -88,6 +139,13 @@ SurfaceFigures measureSurface(SettledGlobe& globe, glm::ivec2 size) {
       figures.errorPixels = std::max(figures.errorPixels, errorOf(chunk, *surface, globe.surface().tiling(), view));
     }
   }
+  std::size_t dark = 0;
+  for (const SelectedChunk& chunk : globe.surface().selected()) {
+    const ChunkSurface* surface = globe.surface().tiles().surfaces().find(chunk.index);
+    dark += surface != nullptr && !isInDaylight(*surface, view.lightDirection) ? 1 : 0;
+  }
+  figures.mostlyNight = 2 * dark > globe.surface().selected().size();
+  figures.texelsPerPixel = texelsPerPixel(globe, view);
   figures.coveredPixels = coveredPixels(globe, size);
   return figures;
 }

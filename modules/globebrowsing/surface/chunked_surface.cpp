@@ -44,7 +44,7 @@ void ChunkedSurface::update(const FrameContext& frame, const SurfaceSettings& se
                             tiles_->composites().inUse(CompositeKind::Overlay),
                             settings.showEdges,
                             settings.opacity < 1.0};
-  if (const Result<void> program = renderer_.setProgram(key); !program) {
+  if (const Result<void> program = renderer_.programs().set(key); !program) {
     if (programTrouble_ != program.error().message()) {
       programTrouble_ = program.error().message();
       log::error("{}", programTrouble_);
@@ -90,10 +90,10 @@ Settled ChunkedSurface::settled(std::size_t /*view*/) const {
   if (!programTrouble_.empty()) {
     return {true, programTrouble_};
   }
-  if (const std::string error = renderer_.programError(); !error.empty()) {
+  if (const std::string error = renderer_.programs().error(); !error.empty()) {
     return {true, error};
   }
-  if (!renderer_.ownProgramReady()) {
+  if (!renderer_.programs().ready()) {
     return {false, "the program that draws chunks is being built"};
   }
   if (const Composer& composer = tiles_->composites().composer(); !composer.ready(CompositeKind::Base)) {
