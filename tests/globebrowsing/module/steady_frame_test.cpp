@@ -87,6 +87,7 @@ TEST_F(SteadyFrameTest, AllocatesNothing) {
   for (const double distance : {2e7, 7e6, 6.45e6}) {
     look(0.5, 0.7, distance);
     ASSERT_TRUE(settle());
+    ASSERT_EQ(host_->renderables.begin()->second->ground()->settled(0).reason, "");
     for (int n = 0; n < 3; ++n) {
       frame();
     }
