@@ -1,6 +1,10 @@
 #include "globebrowsing/script_library.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "globebrowsing/renderable_globe.h"
 
@@ -23,6 +27,21 @@ Result<RenderableGlobe*> globe(Host& host, const Value& node) {
     }
     return failure(fmt::format("there is no globe \"{}\"", identifier), {},
                    "openspace.globebrowsing.globes() lists those there are");
+  });
+}
+
+/// A globe's group by any of its names, or the error that a script gets.
+Result<LayerGroup*> groupOf(RenderableGlobe& globe, const Value& group) {
+  return text(group, "group").and_then([&](const std::string& word) -> Result<LayerGroup*> {
+    if (const std::optional<NamedGroup> named = layerGroupFromName(word)) {
+      return &globe.layers().group(named->group);
+    }
+    std::vector<std::string_view> names;
+    for (const LayerGroupId id : allLayerGroups) {
+      names.push_back(name(id));
+    }
+    return failure(fmt::format("there is no layer group \"{}\"", word), {},
+                   fmt::format("use one of: {}", fmt::join(names, ", ")));
   });
 }
 
@@ -56,16 +75,12 @@ ScriptResult deleteLayer(Host& host, std::span<const Value> arguments) {
 
 ScriptResult layers(Host& host, std::span<const Value> arguments) {
   return globe(host, arguments[0]).and_then([&](RenderableGlobe* found) -> ScriptResult {
-    const Result<std::string> group = text(arguments[1], "group");
+    const Result<LayerGroup*> group = groupOf(*found, arguments[1]);
     if (!group) {
       return tl::make_unexpected(group.error());
     }
-    const std::optional<NamedGroup> named = layerGroupFromName(*group);
-    if (!named) {
-      return failure(fmt::format("there is no layer group \"{}\"", *group));
-    }
     Table identifiers;
-    for (const auto& layer : found->layers().group(named->group).layers()) {
+    for (const auto& layer : (*group)->layers()) {
       identifiers.list.emplace_back(layer->identifier());
     }
     return std::vector<Value>{Value(std::move(identifiers))};
@@ -75,7 +90,7 @@ ScriptResult layers(Host& host, std::span<const Value> arguments) {
 /// The identifier of a layer given by it or by its place (from 0).
 Result<std::string> layerAt(const LayerGroup& group, const Value& which) {
   if (const std::optional<double> place = which.number()) {
-    if (*place >= 0.0 && *place < static_cast<double>(group.layers().size())) {
+    if (*place >= 0.0 && *place < static_cast<double>(group.layers().size()) && *place == std::floor(*place)) {
       return group.layers()[static_cast<std::size_t>(*place)]->identifier();
     }
     return failure(fmt::format("there is no layer number {} in {}", *place, name(group.id())));
@@ -85,12 +100,11 @@ Result<std::string> layerAt(const LayerGroup& group, const Value& which) {
 
 ScriptResult moveLayer(Host& host, std::span<const Value> arguments) {
   return globe(host, arguments[0]).and_then([&](RenderableGlobe* found) -> ScriptResult {
-    const Result<std::string> group = text(arguments[1], "group");
-    const std::optional<NamedGroup> named = group ? layerGroupFromName(*group) : std::nullopt;
-    if (!named) {
-      return failure("there is no such layer group");
+    const Result<LayerGroup*> group = groupOf(*found, arguments[1]);
+    if (!group) {
+      return tl::make_unexpected(group.error());
     }
-    const LayerGroup& own = found->layers().group(named->group);
+    const LayerGroup& own = **group;
     const Result<std::string> source = layerAt(own, arguments[2]);
     const Result<std::string> destination = layerAt(own, arguments[3]);
     if (!source || !destination) {
@@ -102,7 +116,8 @@ ScriptResult moveLayer(Host& host, std::span<const Value> arguments) {
     if (place == all.end()) {
       return failure(fmt::format("there is no layer \"{}\" in {}", *destination, name(own.id())));
     }
-    const Result<void> moved = found->layers().moveLayer(*group, *source, static_cast<int>(place - all.begin()));
+    const Result<void> moved =
+        found->layers().moveLayer(name(own.id()), *source, static_cast<int>(place - all.begin()));
     return moved ? nothing() : tl::make_unexpected(moved.error());
   });
 }

@@ -14,7 +14,7 @@ class TexturePoolShares {
  public:
   enum class Share : std::uint8_t { Small, Large };
   /// Below that apparent radius in pixels a globe's roots have all the texels that it can show.
-  static constexpr double smallRadius = 128.0;
+  static constexpr double smallRadius = 64.0;
 
   [[nodiscard]] static constexpr std::size_t bytes(Share share, std::size_t pool) {
     return share == Share::Large ? pool / 4 * 3 : pool / 16;

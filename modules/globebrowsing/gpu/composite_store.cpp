@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "globebrowsing/source/tile_layout.h"
-#include "host/api/log.h"
 
 namespace meridian::globebrowsing {
 
@@ -228,13 +227,6 @@ void CompositeStore::compose(double milliseconds) {
   }
 }
 
-void CompositeStore::tellFull() {
-  if (!toldFull_) {
-    log::warning("the texture pool has no room for all composites of this view; raise TexturePoolSize");
-    toldFull_ = true;
-  }
-}
-
 CompositeStore::Composed CompositeStore::composeOne(const Request& request) {
   std::optional<std::uint32_t> slot = slots_.use(request.key, frame_);
   const bool had = slot.has_value();
@@ -242,7 +234,6 @@ CompositeStore::Composed CompositeStore::composeOne(const Request& request) {
     slot = slots_.take(request.key, frame_, [](const CompositeKey&) {});
   }
   if (!slot) {
-    tellFull();
     return Composed::NoSlot;
   }
   const std::span<const CompositionPart> parts(parts_.data() + request.firstPart, request.partCount);

@@ -107,7 +107,6 @@ class CompositeStore {
   bool gather(const CompositeKey& key, double priority);
   enum class Composed { Done, NoSlot, NoRawTiles };
   Composed composeOne(const Request& request);
-  void tellFull();
 
   std::shared_ptr<const Tiling> tiling_;
   LayerManager& layers_;
@@ -122,7 +121,6 @@ class CompositeStore {
   std::vector<CompositionPart> parts_;
   std::vector<TileDataPointer> held_;  ///< the raw tiles of parts_
   std::uint64_t frame_ = 0;
-  bool toldFull_ = false;
   std::size_t missing_ = 0;   ///< composites wanted in this frame that are not current
   std::size_t unplaced_ = 0;  ///< of these, those that have their raw tiles but no room
 };

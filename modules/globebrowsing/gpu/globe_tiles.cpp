@@ -20,19 +20,23 @@ constexpr double unknownRelief = 0.02;
 Result<std::unique_ptr<GlobeTiles>> GlobeTiles::create(graphics::Graphics& graphics,
                                                        std::shared_ptr<const Tiling> tiling, LayerManager& layers,
                                                        TileStreamer& streamer, const Options& options) {
-  // A sixth of the pool is shapes, the rest colours. Raw tiles are needed only while they are composed: one to every
-  // four composites.
-  const std::size_t surfaceBytes = options.texturePoolBytes / 6;
-  const std::size_t colourBytes = options.texturePoolBytes - surfaceBytes;
-  const std::size_t units = colourBytes / (4 * Composer::bytesPerComposite() + Composer::bytesPerRawTile());
-  const auto layersOfArray = [&](std::size_t count) {
+  // A sixth of the pool is shapes, but at least what a globe of a few hundred pixels needs, or selection and eviction
+  // would chase each other; the rest colours. Raw tiles are needed only while they are composed: one to every four
+  // composites.
+  constexpr std::size_t leastSurfaces = 128;
+  constexpr std::size_t leastComposites = 12;
+  const auto layersOfArray = [&](std::size_t count, std::size_t least) {
     const auto most = static_cast<std::size_t>(graphics.limits().textureLayers);
-    return static_cast<std::uint32_t>(std::clamp<std::size_t>(count, 8, most));
+    return static_cast<std::uint32_t>(std::clamp(count, least, most));
   };
-  const std::uint32_t surfaces = layersOfArray(surfaceBytes / SurfacePool::bytesPerSlot());
-  const std::uint32_t rawTiles = layersOfArray(std::max<std::size_t>(units, options.leastRawTiles));
-  const std::size_t rawBytes = std::min(colourBytes, rawTiles * Composer::bytesPerRawTile());
-  const std::uint32_t composites = layersOfArray((colourBytes - rawBytes) / Composer::bytesPerComposite());
+  const std::uint32_t surfaces =
+      layersOfArray(options.texturePoolBytes / 6 / SurfacePool::bytesPerSlot(), leastSurfaces);
+  const auto less = [](std::size_t from, std::size_t bytes) { return from - std::min(from, bytes); };
+  const std::size_t colourBytes = less(options.texturePoolBytes, surfaces * SurfacePool::bytesPerSlot());
+  const std::size_t units = colourBytes / (4 * Composer::bytesPerComposite() + Composer::bytesPerRawTile());
+  const std::uint32_t rawTiles = layersOfArray(units, options.leastRawTiles);
+  const std::uint32_t composites = layersOfArray(
+      less(colourBytes, rawTiles * Composer::bytesPerRawTile()) / Composer::bytesPerComposite(), leastComposites);
   return Composer::create(graphics, {composites, rawTiles}).map([&](std::unique_ptr<Composer> composer) {
     return std::unique_ptr<GlobeTiles>(
         new GlobeTiles(std::move(tiling), layers, streamer, std::move(composer), surfaces, composites));

@@ -6,7 +6,6 @@
 
 #include "globebrowsing/layers/compose_heights.h"
 #include "globebrowsing/providers/raw_tile.h"
-#include "host/api/log.h"
 
 namespace meridian::globebrowsing {
 
@@ -141,10 +140,6 @@ void SurfaceStore::upload(graphics::UploadBudget& budget) {
       break;
     }
     full_ = !place(arrival) || full_;
-  }
-  if (full_ && !toldFull_) {
-    log::warning("the texture pool has no room for all surfaces of this view; raise TexturePoolSize");
-    toldFull_ = true;
   }
   arrivals_.clear();
 }

@@ -88,7 +88,6 @@ class SurfaceStore {
   std::uint32_t stream_ = 0;  ///< of surfaces composed from the present version of the height layers
   unsigned lastStamp_ = 0;
   bool full_ = false;
-  bool toldFull_ = false;
   int deepest_ = 0;
   double lowest_ = 0.0;
   double highest_ = 0.0;

@@ -1,6 +1,7 @@
 #include "globebrowsing/surface/chunked_surface.h"
 
 #include <chrono>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,14 @@
 #include "host/api/statistics.h"
 
 namespace meridian::globebrowsing {
+
+namespace {
+
+constexpr std::string_view tooSmallPool = "the texture pool is too small for this view; raise TexturePoolSize";
+/// A globe coming nearer soon gets a larger pool.
+constexpr int framesUntilTold = 120;
+
+}  // namespace
 
 Result<std::unique_ptr<ChunkedSurface>> ChunkedSurface::create(Parts parts, const GlobeTiles::Options& options) {
   Result<std::unique_ptr<GlobeTiles>> tiles =
@@ -43,6 +52,14 @@ void ChunkedSurface::update(const FrameContext& frame, const SurfaceSettings& se
   }
   select(frame, settings);
   tiles_->process(parts_.graphics->uploads(), settings.compositionMilliseconds);
+  tellWhenFull();
+}
+
+void ChunkedSurface::tellWhenFull() {
+  fullFrames_ = tiles_->full() ? fullFrames_ + 1 : 0;
+  if (fullFrames_ == framesUntilTold) {
+    log::warning("{}", tooSmallPool);
+  }
 }
 
 void ChunkedSurface::select(const FrameContext& frame, const SurfaceSettings& settings) {
@@ -88,7 +105,7 @@ Settled ChunkedSurface::settled(std::size_t /*view*/) const {
     return {false, std::move(reason)};
   }
   if (tiles_->full()) {
-    return {true, "the texture pool is too small for this view; raise TexturePoolSize"};
+    return {true, std::string(tooSmallPool)};
   }
   if (!tree_.figures().atTarget) {
     return {false, fmt::format("{} chunks are not at their target", tree_.figures().missing)};

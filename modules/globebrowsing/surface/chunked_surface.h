@@ -41,6 +41,7 @@ class ChunkedSurface final : public Surface {
  private:
   ChunkedSurface(Parts parts, std::unique_ptr<GlobeTiles> tiles);
   void select(const FrameContext& frame, const SurfaceSettings& settings);
+  void tellWhenFull();
 
   Parts parts_;
   std::unique_ptr<GlobeTiles> tiles_;
@@ -50,6 +51,7 @@ class ChunkedSurface final : public Surface {
   SurfaceSettings settings_;
   std::string programTrouble_;
   bool frameOpen_ = false;
+  int fullFrames_ = 0;  ///< in a row, with a pool too small for the view
 };
 
 }  // namespace meridian::globebrowsing

@@ -1,0 +1,118 @@
+#include "globebrowsing/surface/height_query.h"
+
+#include "../module/globe_fixture.h"
+#include "globebrowsing/surface/chunked_surface.h"
+#include "globebrowsing/tiling/geodetic_tiling.h"
+
+namespace meridian::globebrowsing {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+/// Metres, smooth, and below zero on half the globe; angles in degrees.
+double relief(double longitude, double latitude) {
+  return 6000.0 * std::sin(3.0 * longitude * degree) * std::cos(latitude * degree) + 20.0 * latitude;
+}
+
+class HeightQueryTest : public GlobeTest {
+ protected:
+  void SetUp() override {
+    GlobeTest::SetUp();
+    if (!graphics_) {
+      return;
+    }
+    const std::string file = raster(
+        "relief.tif", [](int, double longitude, double latitude) { return relief(longitude, latitude); }, 1,
+        GDT_Float32, 2048);
+    globe_ = &addGlobe({{"HeightLayers", listOf({fileLayer("H", file)})}});
+    look(20.0 * degree, 30.0 * degree, 7.5e6);
+    ASSERT_TRUE(settle());
+  }
+  RenderableGlobe* globe_ = nullptr;
+};
+
+TEST_F(HeightQueryTest, HeightAtFollowsTheRasterWhereTheCameraLooks) {
+  for (double latitude = 10.0; latitude <= 30.0; latitude += 1.7) {
+    for (double longitude = 20.0; longitude <= 40.0; longitude += 1.3) {
+      // The tiles there have a node a third of a degree at most: relief bends by 6000 m (3 * 0.35 degree)^2 / 8.
+      EXPECT_NEAR(globe_->heightAt(latitude * degree, longitude * degree), relief(longitude, latitude), 1.0)
+          << latitude << ", " << longitude;
+    }
+  }
+}
+
+TEST_F(HeightQueryTest, HeightAtAnswersEverywhere) {
+  for (const double latitude : {-90.0, -45.0, 0.0, 89.9, 90.0}) {
+    for (const double longitude : {-180.0, -90.0, 0.0, 179.99, 180.0, 540.0}) {
+      const double wrapped = std::remainder(longitude, 360.0);
+      EXPECT_NEAR(globe_->heightAt(latitude * degree, longitude * degree), relief(wrapped, latitude), 200.0)
+          << latitude << ", " << longitude;
+    }
+  }
+}
+
+TEST_F(HeightQueryTest, PickFindsTheSurfaceAlongTheRay) {
+  for (double latitude = 12.0; latitude <= 28.0; latitude += 4.0) {
+    for (double longitude = 22.0; longitude <= 38.0; longitude += 4.0) {
+      const glm::dvec3 target = globe_->cartesian({latitude * degree, longitude * degree, relief(longitude, latitude)});
+      for (const double direction : {1.0, 1e-3, 1e6}) {
+        const auto hit = globe_->pick(view_.cameraPosition, direction * (target - view_.cameraPosition));
+        ASSERT_TRUE(hit) << latitude << ", " << longitude;
+        EXPECT_LT(glm::length(*hit - target), 3.0);
+        const GeodeticPosition place = globe_->geodetic(*hit);
+        EXPECT_NEAR(place.height, globe_->heightAt(place.latitude, place.longitude), 0.1);
+      }
+    }
+  }
+}
+
+TEST_F(HeightQueryTest, PickMissesWhatIsBesideOrBehind) {
+  const glm::dvec3 eye = view_.cameraPosition;
+  EXPECT_FALSE(globe_->pick(eye, eye)) << "away from the globe";
+  const glm::dvec3 aside = glm::cross(eye, glm::dvec3(0, 0, 1));
+  EXPECT_FALSE(globe_->pick(eye, aside));
+  EXPECT_TRUE(globe_->pick(eye, -eye));
+  EXPECT_TRUE(globe_->pick(1e5 * eye, -eye)) << "from far away";
+}
+
+TEST_F(HeightQueryTest, PickFromBelowTheSurfaceIsWhereItStarts) {
+  const glm::dvec3 inside = 0.9 * radius * glm::normalize(view_.cameraPosition);
+  const auto hit = globe_->pick(inside, inside);
+  ASSERT_TRUE(hit);
+  EXPECT_LT(glm::length(*hit - inside), 1.0);
+}
+
+TEST_F(HeightQueryTest, SurfacesOfNeighboursAgreeOnTheirSharedNodes) {
+  auto& surface = dynamic_cast<ChunkedSurface&>(*globe_->surface());
+  const SurfaceStore& store = surface.tiles().surfaces();
+  const GeodeticTiling tiling(*Ellipsoid::fromRadii(globe_->radii()));
+  int compared = 0;
+  for (const SelectedChunk& chunk : surface.selected()) {
+    const auto neighbour = tiling.neighbour(chunk.index, Edge::East);
+    const ChunkSurface* west = store.find(chunk.index);
+    const ChunkSurface* east = neighbour ? store.find(neighbour->index) : nullptr;
+    if (east == nullptr || neighbour->index.level != chunk.index.level) {
+      continue;
+    }
+    for (int node = 0; node < ChunkSurface::nodes; ++node) {
+      const double v = node / double{ChunkSurface::nodes - 1};
+      ASSERT_EQ(west->heightAt({1.0, v}), east->heightAt({0.0, v})) << node;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 0);
+}
+
+TEST_F(HeightQueryTest, SkirtsReachBelowEveryGapAndViewsSeeOnlyTheirChunks) {
+  auto& surface = dynamic_cast<ChunkedSurface&>(*globe_->surface());
+  ASSERT_FALSE(surface.selected().empty());
+  for (const SelectedChunk& chunk : surface.selected()) {
+    EXPECT_GE(chunk.skirt, 0.0);
+    EXPECT_TRUE(std::isfinite(chunk.skirt));
+    EXPECT_NE(surface.tiles().surfaces().find(chunk.index), nullptr) << "selected without a surface";
+    EXPECT_EQ(chunk.views, 1U);
+  }
+}
+
+}  // namespace
+}  // namespace meridian::globebrowsing
