@@ -35,8 +35,9 @@ struct ViewCase {
   double longitude;  ///< degrees
   double altitude;   ///< metres above the ellipsoid, or above the relief
   bool aboveRelief;
-  double heading;  ///< degrees from north by east
-  double pitch;    ///< degrees above the horizontal
+  double heading;            ///< degrees from north by east
+  double pitch;              ///< degrees above the horizontal
+  double fieldOfView = 0.9;  ///< radians, of the picture's height
 };
 constexpr bool ground = true;
 constexpr bool ellipsoid = false;
@@ -83,10 +84,15 @@ constexpr ViewCase earthViews[] = {
 
 constexpr SmoothWorld mars{"Mars", {3396190.0, 3396190.0, 3376200.0}, 12000.0, 14.0, false};
 constexpr ViewCase marsViews[] = {
-    {"whole disc", -10, 250, 9e6, ellipsoid, 0, -90},          {"limb from 600 km", 25, 40, 6e5, ellipsoid, 30, -25},
-    {"horizon from 30 km", -45, -65, 3e4, ellipsoid, 250, -6}, {"2 km over the relief", 18, 226, 2e3, ground, 45, -8},
-    {"100 m over the relief", 4, 137, 100, ground, 160, -4},   {"north pole", 90, 0, 1e5, ellipsoid, 0, -70},
-    {"south pole", -89.8, 30, 3e4, ellipsoid, 180, -20},       {"antimeridian", 5, 180, 2e4, ellipsoid, 90, -14},
+    {"whole disc", -10, 250, 9e6, ellipsoid, 0, -90},
+    {"limb from 600 km", 25, 40, 6e5, ellipsoid, 30, -25},
+    {"horizon from 30 km", -45, -65, 3e4, ellipsoid, 250, -6},
+    {"2 km over the relief", 18, 226, 2e3, ground, 45, -8},
+    {"100 m over the relief", 4, 137, 100, ground, 160, -4},
+    {"north pole", 90, 0, 1e5, ellipsoid, 0, -70},
+    {"south pole", -89.8, 30, 3e4, ellipsoid, 180, -20},
+    {"antimeridian", 5, 180, 2e4, ellipsoid, 90, -14},
+    {"limb through a telescope", 0, 0, 4e6, ellipsoid, 40, -62.6, 0.04},
 };
 
 constexpr SmoothWorld triaxial{"Triaxial", {3.0e6, 2.5e6, 2.0e6}, 15000.0, 10.0, true};
@@ -132,6 +138,8 @@ constexpr ViewCase hollowViews[] = {
     {"below the ellipsoid looking up", -25, -105, 500, ground, 210, 8},
     {"just above the ellipsoid, deep hollow", -25, -105, 300, ellipsoid, 120, -35},
     {"above the ellipsoid, deep hollow", -25, -105, 3e3, ellipsoid, 300, -30},
+    {"deep hollow through a long lens", -25, -105, 300, ellipsoid, 120, -25, 0.06},
+    {"hollow to its far side through a long lens", -25, -105, 1e3, ellipsoid, 200, -15, 0.06},
     {"low over a ridge", 60, 20, 300, ground, 100, -6},
     {"antimeridian", -20, 180, 5e3, ground, 80, -15},
 };
@@ -145,7 +153,7 @@ Eye eyeOf(const SmoothWorld& world, const ViewCase& view) {
   const glm::dvec3 level = std::cos(heading) * glm::cross(up, east) + std::sin(heading) * east;
   const double height = view.altitude + (view.aboveRelief ? world.height(up) : 0.0);
   return {positionOf(up, height, world.radii), std::cos(pitch) * level + std::sin(pitch) * up,
-          std::cos(pitch) * up - std::sin(pitch) * level, std::max(0.05, 1e-3 * view.altitude)};
+          std::cos(pitch) * up - std::sin(pitch) * level, std::max(0.05, 1e-3 * view.altitude), view.fieldOfView};
 }
 
 std::string fileName(const SmoothWorld& world, const std::string& view) {
