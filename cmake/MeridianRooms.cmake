@@ -40,7 +40,11 @@ function(meridian_test NAME)
   add_executable(${NAME} ${TEST_SOURCES})
   target_link_libraries(${NAME} PRIVATE meridian-compiler ${TEST_LINKS} GTest::gmock_main)
   target_compile_definitions(${NAME} PRIVATE MERIDIAN_SOURCE_FOLDER="${PROJECT_SOURCE_DIR}")
-  gtest_discover_tests(${NAME} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT 300)
+  set(properties TIMEOUT 300)
+  if(TEST_LABELS)
+    list(APPEND properties LABELS "${TEST_LABELS}")
+  endif()
+  gtest_discover_tests(${NAME} DISCOVERY_MODE PRE_TEST PROPERTIES ${properties})
 endfunction()
 
 # meridian_benchmark(NAME SOURCES... LINKS...): one Google Benchmark program, run by scripts/bench.

@@ -17,6 +17,8 @@ void GlobeServices::enterFrame(std::uint64_t frame) {
     streamer_.endFrame();
     streamer_.beginFrame();
     statistics_.chunks = {};
+    statistics_.memory.texturePool = 0;
+    poolShares_.beginFrame();
     frame_ = frame;
   }
 }

@@ -4,6 +4,7 @@
 
 #include "globebrowsing/streaming/tile_streamer.h"
 #include "globebrowsing/streaming/worker_pool.h"
+#include "globebrowsing/texture_pool_shares.h"
 #include "host/api/property.h"
 #include "host/api/property_owner.h"
 #include "host/api/statistics.h"
@@ -19,14 +20,18 @@ class GlobeServices {
 
   [[nodiscard]] WorkerPool& workers() { return workers_; }
   [[nodiscard]] TileStreamer& streamer() { return streamer_; }
+  [[nodiscard]] TexturePoolShares& poolShares() { return poolShares_; }
+  [[nodiscard]] Statistics& statistics() { return statistics_; }
 
   /// Every globe calls this first in its update: the first call of a frame ends the last frame of the streamer and
-  /// begins the next, so that what no globe asked for is cancelled, and empties the chunk gauges, which globes add to.
+  /// begins the next, so that what no globe asked for is cancelled, and empties the gauges that globes add to:
+  /// chunks and texture pool.
   void enterFrame(std::uint64_t frame);
 
   IntProperty tileCacheSize{{"TileCacheSize", "Tile cache", "Of decoded tiles in memory, in MiB"}, 512, 16, 65536};
   IntProperty texturePoolSize{
-      {"TexturePoolSize", "Texture pool", "On the graphics card for each globe near enough to draw, in MiB"},
+      {"TexturePoolSize", "Texture pool",
+       "On the graphics card, in MiB: three quarters for the globe that looks largest, a sixteenth for each other"},
       512,
       64,
       65536};
@@ -37,6 +42,7 @@ class GlobeServices {
   Statistics& statistics_;
   WorkerPool workers_;
   TileStreamer streamer_;
+  TexturePoolShares poolShares_;
   std::uint64_t frame_ = ~std::uint64_t{0};
 };
 

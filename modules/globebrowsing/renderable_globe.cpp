@@ -1,6 +1,7 @@
 #include "globebrowsing/renderable_globe.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <glm/geometric.hpp>
 
@@ -75,7 +76,9 @@ RenderableGlobe::RenderableGlobe(std::shared_ptr<const Tiling> tiling, GlobeServ
   addProperties();
 }
 
-RenderableGlobe::~RenderableGlobe() = default;
+RenderableGlobe::~RenderableGlobe() {
+  dropSurfaces();
+}
 
 void RenderableGlobe::addProperties() {
   for (Property* property : std::initializer_list<Property*>{&performShading, &useAccurateNormals, &renderAtDistance,
@@ -115,27 +118,81 @@ Result<void> RenderableGlobe::initializeGraphics(graphics::Graphics& graphics) {
 }
 
 void RenderableGlobe::deinitializeGraphics() {
-  surface_.reset();
+  dropSurfaces();
   graphics_ = nullptr;
 }
 
-bool RenderableGlobe::isLargeEnough(const FrameContext& frame) const {
-  return renderAtDistance.get() || std::any_of(frame.views.begin(), frame.views.end(), [&](const View& view) {
-           const double distance = glm::length(view.cameraPosition);
-           return boundingSphere() * view.pixelsPerRadian >= 0.5 * distance;
-         });
+double RenderableGlobe::apparentRadius(const FrameContext& frame) const {
+  double largest = 0.0;
+  for (const View& view : frame.views) {
+    const double pixels = boundingSphere() * view.pixelsPerRadian / glm::length(view.cameraPosition);
+    largest = std::isfinite(pixels) ? std::max(largest, pixels) : largest;
+  }
+  return largest;
 }
 
-void RenderableGlobe::makeSurface() {
-  const GlobeTiles::Options options{static_cast<std::size_t>(services_.texturePoolSize.get()) << 20};
-  Result<std::unique_ptr<ChunkedSurface>> made =
-      ChunkedSurface::create({graphics_, &layers_, &services_.streamer(), tiling_}, options);
-  if (made) {
-    surface_ = *std::move(made);
-  } else {
-    log::error("{}", made.error().message());
-    surfaceFailed_ = true;
+GlobeTiles::Options RenderableGlobe::poolOptions(TexturePoolShares::Share share) const {
+  std::size_t most = 1;
+  for (const CompositeKind kind : allCompositeKinds) {
+    most = std::max(most, layers_.group(layerGroup(kind)).enabledLayers().size());
   }
+  // In steps, and never less than before, so that toggling layers does not make surfaces anew.
+  const auto rawTiles = static_cast<std::uint32_t>((most + 7) / 8 * 8);
+  const std::size_t pool = static_cast<std::size_t>(services_.texturePoolSize.get()) << 20;
+  return {TexturePoolShares::bytes(share, pool), std::max(rawTiles, pool_.leastRawTiles)};
+}
+
+std::unique_ptr<Surface> RenderableGlobe::makeSurface(const GlobeTiles::Options& pool) {
+  Result<std::unique_ptr<ChunkedSurface>> made =
+      ChunkedSurface::create({graphics_, &layers_, &services_.streamer(), tiling_}, pool);
+  if (!made) {
+    surfaceError_ = made.error().message();
+    log::error("{}", surfaceError_);
+    return nullptr;
+  }
+  return *std::move(made);
+}
+
+void RenderableGlobe::updateSurfaces(const FrameContext& frame, TexturePoolShares::Share share) {
+  using Share = TexturePoolShares::Share;
+  const GlobeTiles::Options wanted = poolOptions(share);
+  const auto hold = [&] {
+    if (share == Share::Large) {
+      services_.poolShares().hold(this);
+    } else {
+      services_.poolShares().release(this);
+    }
+  };
+  if (!surface_) {
+    surface_ = makeSurface(wanted);
+    pool_ = wanted;
+    hold();
+  } else if (wanted == pool_) {
+    replacement_.reset();
+  } else if (!replacement_ || wanted != replacementPool_) {
+    replacement_ = makeSurface(wanted);
+    replacementPool_ = wanted;
+    if (share == Share::Large) {
+      hold();
+    }
+  }
+  if (surface_) {
+    surface_->update(frame, settings());
+  }
+  if (replacement_) {
+    replacement_->update(frame, settings());
+    if (replacement_->settled(0).complete) {
+      surface_ = std::move(replacement_);
+      pool_ = replacementPool_;
+      hold();
+    }
+  }
+}
+
+void RenderableGlobe::dropSurfaces() {
+  surface_.reset();
+  replacement_.reset();
+  services_.poolShares().release(this);
 }
 
 SurfaceSettings RenderableGlobe::settings() const {
@@ -155,20 +212,20 @@ SurfaceSettings RenderableGlobe::settings() const {
 
 void RenderableGlobe::update(const FrameContext& frame) {
   services_.enterFrame(frame.number);
-  drawn_ = graphics_ != nullptr && enabled.get() && opacity.get() > 0.0 && isLargeEnough(frame);
-  if (!drawn_) {
-    if (surface_ && ++framesUnseen_ > framesUntilRelease) {
-      surface_.reset();
+  const double radius = apparentRadius(frame);
+  drawn_ = graphics_ != nullptr && enabled.get() && opacity.get() > 0.0 && (renderAtDistance.get() || radius >= 0.5);
+  if (drawn_) {
+    framesUnseen_ = 0;
+    layers_.update();
+    const std::optional<TexturePoolShares::Share> share = services_.poolShares().bid(this, radius);
+    if (share && surfaceError_.empty()) {
+      updateSurfaces(frame, *share);
     }
-    return;
+  } else if (surface_ && (++framesUnseen_ > framesUntilRelease || services_.poolShares().isWaitedFor(this))) {
+    dropSurfaces();
   }
-  framesUnseen_ = 0;
-  layers_.update();
-  if (!surface_ && !surfaceFailed_) {
-    makeSurface();
-  }
-  if (surface_) {
-    surface_->update(frame, settings());
+  for (const Surface* surface : {surface_.get(), replacement_.get()}) {
+    services_.statistics().memory.texturePool += surface != nullptr ? surface->residentBytes() : 0;
   }
 }
 
@@ -176,6 +233,17 @@ void RenderableGlobe::draw(const FrameContext& frame, std::size_t view) {
   if (drawn_ && surface_) {
     surface_->draw(frame, view);
   }
+}
+
+Renderable::Contents RenderableGlobe::contents() const {
+  Contents found{1, layerErrors_.size(), 0};
+  for (const LayerGroupId id : allLayerGroups) {
+    for (const auto& layer : layers_.group(id).layers()) {
+      ++found.layers;
+      found.usableLayers += layer->provider()->check() ? 1 : 0;
+    }
+  }
+  return found;
 }
 
 glm::dvec3 RenderableGlobe::cartesian(const GeodeticPosition& position) const {
@@ -199,7 +267,16 @@ std::optional<glm::dvec3> RenderableGlobe::pick(const glm::dvec3& origin, const 
 }
 
 Settled RenderableGlobe::settled(std::size_t view) const {
-  return drawn_ && surface_ ? surface_->settled(view) : Settled{};
+  if (!drawn_ || !surfaceError_.empty()) {
+    return {true, surfaceError_};
+  }
+  if (!surface_) {
+    return {false, "the globe has not been prepared yet"};
+  }
+  if (replacement_) {
+    return {false, "the globe moves to textures of another size"};
+  }
+  return surface_->settled(view);
 }
 
 }  // namespace meridian::globebrowsing

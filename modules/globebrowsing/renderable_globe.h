@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "globebrowsing/globe_services.h"
+#include "globebrowsing/gpu/globe_tiles.h"
 #include "globebrowsing/layers/layer_manager.h"
 #include "globebrowsing/surface/surface.h"
 #include "globebrowsing/tiling/tiling.h"
@@ -36,6 +37,7 @@ class RenderableGlobe final : public Renderable, public Ground {
   void draw(const FrameContext& frame, std::size_t view) override;
   [[nodiscard]] double boundingSphere() const override { return tiling_->ellipsoid().maximumRadius(); }
   [[nodiscard]] Ground* ground() override { return this; }
+  [[nodiscard]] Contents contents() const override;
 
   [[nodiscard]] glm::dvec3 radii() const override { return tiling_->ellipsoid().radii(); }
   [[nodiscard]] glm::dvec3 cartesian(const GeodeticPosition& position) const override;
@@ -71,9 +73,14 @@ class RenderableGlobe final : public Renderable, public Ground {
   RenderableGlobe(std::shared_ptr<const Tiling> tiling, GlobeServices& services);
   void addProperties();
   Result<void> load(const RenderableRequest& request);
-  [[nodiscard]] bool isLargeEnough(const FrameContext& frame) const;
+  /// In pixels, of the view that shows it largest.
+  [[nodiscard]] double apparentRadius(const FrameContext& frame) const;
   [[nodiscard]] SurfaceSettings settings() const;
-  void makeSurface();
+  [[nodiscard]] GlobeTiles::Options poolOptions(TexturePoolShares::Share share) const;
+  [[nodiscard]] std::unique_ptr<Surface> makeSurface(const GlobeTiles::Options& pool);
+  /// Makes the surface, or another one when the pool should be of another size: that one draws when it is complete.
+  void updateSurfaces(const FrameContext& frame, TexturePoolShares::Share share);
+  void dropSurfaces();
 
   std::shared_ptr<const Tiling> tiling_;
   GlobeServices& services_;
@@ -81,8 +88,11 @@ class RenderableGlobe final : public Renderable, public Ground {
   std::vector<Error> layerErrors_;
   graphics::Graphics* graphics_ = nullptr;
   std::unique_ptr<Surface> surface_;
-  bool surfaceFailed_ = false;
-  bool drawn_ = false;  ///< in this frame
+  std::unique_ptr<Surface> replacement_;  ///< of surface_, as soon as it is settled
+  GlobeTiles::Options pool_;              ///< of surface_
+  GlobeTiles::Options replacementPool_;
+  std::string surfaceError_;  ///< why there can be no surface
+  bool drawn_ = false;        ///< in this frame
   int framesUnseen_ = 0;
 };
 

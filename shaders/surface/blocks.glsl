@@ -14,4 +14,5 @@ layout(std140, binding = 1) uniform ChunkBlock {
     vec4 layers;            // of the composites' array: base, night, overlay (below 0: none); w: of the normals' array
     float skirt;            // metres
     float level;
+    float normalScale;      // normal offset = (texel * 255 - 128) / 127 * this
 } chunk;

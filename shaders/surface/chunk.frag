@@ -20,12 +20,14 @@ vec4 composite(vec4 transform, float layer) {
 }
 
 void main() {
-    vec3 lit = composite(chunk.base, chunk.layers.x).rgb;
+    // Without any composite the grey that composition starts from.
+    vec3 lit = chunk.layers.x < 0.0 ? vec3(0.3) : composite(chunk.base, chunk.layers.x).rgb;
 #if SHADING
     vec3 normal = vertical;
 #if ACCURATE_NORMALS
     // Node-registered: the first and last of the 129 texel centres lie on the edges.
-    normal += texture(normalOffsets, vec3((unitSquare * 128.0 + 0.5) / 129.0, chunk.layers.w)).xyz;
+    vec3 texel = texture(normalOffsets, vec3(unitSquare * (128.0 / 129.0) + 0.5 / 129.0, chunk.layers.w)).xyz;
+    normal += (texel * (255.0 / 127.0) - 128.0 / 127.0) * chunk.normalScale;
 #endif
     normal = normalize(normal);
     lit *= min(view.ambient + max(dot(normal, view.lightDirection), 0.0), 1.0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -18,6 +19,10 @@ namespace {
 
 constexpr std::size_t mostViews = 32;
 constexpr int finestStep = 4;
+/// A tile that this step (8 segments a side) does not bring within the error splits. Two are left for what only
+/// drawing knows: the sides of a flat picture stretch what they show. And small tiles fit uneven relief better: where
+/// one peak asks for density, only its own tile gets it.
+constexpr int splitStep = 2;
 /// A float holds 24 bits: a corner patch's edge times this is the error of a vertex along it.
 constexpr double floatPrecision = 0x1p-23;
 constexpr double maximumPrecisionPixels = 0.05;
@@ -70,9 +75,16 @@ struct PreparedView {
   glm::dvec3 position{0.0};
   glm::dvec3 forward{0.0};  ///< unit, or zero where the matrix has none
   double pixelsPerRadian = 0.0;
+  double leastCosine = 1.0;  ///< between forward and the corners of the picture
   std::uint32_t bit = 0;
   Frustum frustum;
   Horizon horizon{glm::dvec3(1.0), 0.0, glm::dvec3(0.0)};
+};
+
+/// Pixels that a metre along the vertical covers, at most, within a tile.
+struct ErrorScale {
+  double anywhere = 0.0;  ///< wherever the view looks: on the middle of its picture
+  double drawn = 0.0;     ///< where it is on the flat picture, which stretches what is off its middle
 };
 
 /// What all views together ask of a tile.
@@ -81,9 +93,53 @@ struct Demand {
   bool beside = false;      ///< some view would see it, looking elsewhere
   double distance = 0.0;
   double urgency = 0.0;
-  double pixelsPerMetre = 0.0;
-  double centred = 0.0;  ///< 1 in the middle of a view, 0 behind it
+  double pixelsPerMetre = 0.0;       ///< at the tile's nearest point
+  double errorPixelsPerMetre = 0.0;  ///< the same of a displacement along the vertical, seen at the tile's slant
+  double drawnPixelsPerMetre = 0.0;  ///< the same on the flat picture, which stretches what is off its middle
+  double centred = 0.0;              ///< 1 in the middle of a view, 0 behind it
 };
+
+/// Why a tile splits.
+struct Refinement {
+  bool colours = false;
+  bool surface = false;
+};
+
+/// The cosine between the middle of the picture and its corners, 1 where the matrix has no perspective. The rows of a
+/// perspective matrix are the picture's axes, as long as a radian is in half pictures.
+double cornerCosine(const glm::dmat4& clipFromModel) {
+  const auto rowLength = [&](int row) {
+    return glm::length(glm::dvec3(clipFromModel[0][row], clipFromModel[1][row], clipFromModel[2][row]));
+  };
+  const double ahead = rowLength(3);
+  const double across = ahead / rowLength(0);
+  const double up = ahead / rowLength(1);
+  const double cosine = 1.0 / std::sqrt(1.0 + across * across + up * up);
+  return ahead > 0.0 && std::isfinite(cosine) ? cosine : 1.0;
+}
+
+/// A displacement along the vertical moves across the picture by the sine of the angle at which it is seen. From
+/// farther than the tile's edge that hardly bends between its corners and middle; from nearer every angle occurs.
+ErrorScale errorScale(const ChunkBounds& bounds, const PreparedView& view, double distance) {
+  ErrorScale scale;
+  if (distance < bounds.edgeLength) {
+    scale.anywhere = view.pixelsPerRadian / distance;
+    scale.drawn = scale.anywhere / (view.leastCosine * view.leastCosine);
+    return scale;
+  }
+  constexpr double betweenPoints = 1.1;
+  for (std::size_t i = 0; i < bounds.points.size(); ++i) {
+    const glm::dvec3 towards = view.position - bounds.points[i];
+    const double inverse = 1.0 / glm::length(towards);
+    const double cosine = std::max(0.0, glm::dot(towards, bounds.normals[i]) * inverse);
+    const double offAxis = std::max(view.leastCosine, -glm::dot(towards, view.forward) * inverse);
+    const double here =
+        betweenPoints * view.pixelsPerRadian * inverse * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+    scale.anywhere = std::max(scale.anywhere, here);
+    scale.drawn = std::max(scale.drawn, here / (offAxis * offAxis));
+  }
+  return scale;
+}
 
 }  // namespace
 
@@ -102,18 +158,22 @@ class ChunkTree::Implementation {
   /// Selects what covers the node; false when something in it cannot be drawn.
   bool visit(NodeNumber number);
   bool visitTarget(NodeNumber number, const Demand& demand);
-  bool visitChildren(NodeNumber number, const Demand& demand);
+  bool visitChildren(NodeNumber number, const Demand& demand, bool finerColours);
   /// Selects drawable chunks below the node that cover all of it that is visible; nothing if there are none.
   bool coverByFiner(NodeNumber number, bool drawnOnly);
   bool coverByFinerChild(NodeNumber number, bool drawnOnly);
 
   void updateBounds(ChunkNode& node);
   [[nodiscard]] Demand demandOn(const ChunkNode& node) const;
-  [[nodiscard]] bool mustSplit(const ChunkNode& node, const Demand& demand) const;
+  [[nodiscard]] Refinement refinement(const ChunkNode& node, const Demand& demand) const;
   void noteCulled(const ChunkNode& node, const Demand& demand);
   void split(NodeNumber number);
   void draw(NodeNumber number, const Demand& demand);
-  void want(const TileIndex& index, double priority);
+  void want(const ChunkNode& node, double priority);
+  [[nodiscard]] TileResidency::State stateOf(const ChunkNode& node) const {
+    return residency_->state(node.index, node.colourLevel);
+  }
+  void keep(const ChunkNode& node) { residency_->keep(node.index, node.colourLevel); }
   [[nodiscard]] double priority(const Demand& demand, double base) const;
   void truncate(std::size_t count);
 
@@ -162,8 +222,8 @@ void ChunkTree::Implementation::select(std::span<const SelectionView> views, con
   truncate(0);
   prepare(views);
   for (const NodeNumber root : roots_) {
-    residency.want(pool_[root].index, rootPriority);
-    residency.keep(pool_[root].index);
+    residency.want(pool_[root].index, 0, rootPriority);
+    keep(pool_[root]);
   }
   bool covered = true;
   if (viewCount_ > 0) {
@@ -195,6 +255,7 @@ void ChunkTree::Implementation::prepare(std::span<const SelectionView> views) {
     const glm::dvec3 ahead(view.clipFromModel[0][3], view.clipFromModel[1][3], view.clipFromModel[2][3]);
     const double length = glm::length(ahead);
     prepared.forward = length > 0.0 && std::isfinite(length) ? ahead / length : glm::dvec3(0.0);
+    prepared.leastCosine = cornerCosine(view.clipFromModel);
   }
 }
 
@@ -237,24 +298,27 @@ Demand ChunkTree::Implementation::demandOn(const ChunkNode& node) const {
     const double tilt = std::abs(glm::dot(towards, node.bounds.normal)) / centreDistance;
     measure.facing = std::min(1.0, tilt + 0.5 * measure.edgeLength / centreDistance);
     demand.urgency = std::max(demand.urgency, evaluator_->urgency(measure, settings_));
-    demand.pixelsPerMetre = std::max(demand.pixelsPerMetre, view.pixelsPerRadian / measure.distance);
+    const double pixelsPerMetre = view.pixelsPerRadian / measure.distance;
+    demand.pixelsPerMetre = std::max(demand.pixelsPerMetre, pixelsPerMetre);
+    const ErrorScale scale = errorScale(node.bounds, view, measure.distance);
+    demand.errorPixelsPerMetre = std::max(demand.errorPixelsPerMetre, scale.anywhere);
+    demand.drawnPixelsPerMetre = std::max(demand.drawnPixelsPerMetre, scale.drawn);
     demand.distance = std::min(demand.distance, measure.distance);
     demand.centred = std::max(demand.centred, 0.5 - 0.5 * glm::dot(towards, view.forward) / centreDistance);
   }
   return demand;
 }
 
-bool ChunkTree::Implementation::mustSplit(const ChunkNode& node, const Demand& demand) const {
+Refinement ChunkTree::Implementation::refinement(const ChunkNode& node, const Demand& demand) const {
+  Refinement wanted;
   if (node.index.level >= settings_.deepestLevel) {
-    return false;
+    return wanted;
   }
-  if (node.bounds.edgeLength * floatPrecision * demand.pixelsPerMetre > maximumPrecisionPixels) {
-    return true;
-  }
-  if (demand.urgency > 1.0 && (!evaluator_->limitedByData() || residency_->hasFinerColours(node.index))) {
-    return true;
-  }
-  return residency_->geometricError(node.index, finestStep) * demand.pixelsPerMetre > settings_.maximumErrorPixels;
+  wanted.colours = demand.urgency > 1.0 && (!evaluator_->limitedByData() || residency_->hasFinerColours(node.index));
+  wanted.surface =
+      node.bounds.edgeLength * floatPrecision * demand.pixelsPerMetre > maximumPrecisionPixels ||
+      residency_->geometricError(node.index, splitStep) * demand.drawnPixelsPerMetre > settings_.maximumErrorPixels;
+  return wanted;
 }
 
 double ChunkTree::Implementation::priority(const Demand& demand, double base) const {
@@ -263,10 +327,10 @@ double ChunkTree::Implementation::priority(const Demand& demand, double base) co
   return base + (worth < beyondCompare ? worth / (1.0 + worth) : 1.0);
 }
 
-void ChunkTree::Implementation::want(const TileIndex& index, double priority) {
+void ChunkTree::Implementation::want(const ChunkNode& node, double priority) {
   // Roots were asked for before everything else.
-  if (index.level > 0) {
-    residency_->want(index, priority);
+  if (node.index.level > 0) {
+    residency_->want(node.index, node.colourLevel, priority);
   }
 }
 
@@ -278,9 +342,9 @@ void ChunkTree::Implementation::noteCulled(const ChunkNode& node, const Demand& 
   ++figures_.culledFrustum;
   // Beside what is drawn: without it, turning the camera would fall back to a coarser chunk.
   if (settings_.prefetch) {
-    want(node.index, priority(demand, 0.0));
+    want(node, priority(demand, 0.0));
   }
-  residency_->keep(node.index);
+  keep(node);
 }
 
 bool ChunkTree::Implementation::visit(NodeNumber number) {
@@ -293,13 +357,14 @@ bool ChunkTree::Implementation::visit(NodeNumber number) {
     noteCulled(node, demand);
     return true;
   }
-  return mustSplit(node, demand) ? visitChildren(number, demand) : visitTarget(number, demand);
+  const Refinement wanted = refinement(node, demand);
+  return wanted.colours || wanted.surface ? visitChildren(number, demand, wanted.colours) : visitTarget(number, demand);
 }
 
 bool ChunkTree::Implementation::visitTarget(NodeNumber number, const Demand& demand) {
   ChunkNode& node = pool_[number];
-  want(node.index, priority(demand, neededPriority));
-  const TileResidency::State state = residency_->state(node.index);
+  want(node, priority(demand, neededPriority));
+  const TileResidency::State state = stateOf(node);
   if (state == TileResidency::State::Complete) {
     draw(number, demand);
     return true;
@@ -319,22 +384,24 @@ bool ChunkTree::Implementation::visitTarget(NodeNumber number, const Demand& dem
   return true;
 }
 
-bool ChunkTree::Implementation::visitChildren(NodeNumber number, const Demand& demand) {
+bool ChunkTree::Implementation::visitChildren(NodeNumber number, const Demand& demand, bool finerColours) {
   split(number);
   const std::size_t before = selected_.size();
   const std::uint32_t kickedBefore = figures_.kicked;
   bool covered = true;
   for (int i = 0; i < pool_[number].childCount; ++i) {
+    ChunkNode& child = pool_[pool_[number].children[static_cast<std::size_t>(i)]];
+    child.colourLevel = finerColours ? child.index.level : pool_[number].colourLevel;
     covered = visit(pool_[number].children[static_cast<std::size_t>(i)]) && covered;
   }
-  const TileIndex index = pool_[number].index;
-  residency_->keep(index);
+  const ChunkNode& node = pool_[number];
+  keep(node);
   if (covered) {
     return true;
   }
-  if (residency_->state(index) == TileResidency::State::Nothing) {
-    if (index.level % stopgapLevels == 0) {
-      want(index, priority(demand, neededPriority));
+  if (stateOf(node) == TileResidency::State::Nothing) {
+    if (node.index.level % stopgapLevels == 0) {
+      want(node, priority(demand, neededPriority));
     }
     return false;
   }
@@ -372,9 +439,9 @@ bool ChunkTree::Implementation::coverByFinerChild(NodeNumber number, bool drawnO
   if (demand.views == 0) {
     return true;
   }
-  const bool drawable = residency_->state(node.index) != TileResidency::State::Nothing;
+  const bool drawable = stateOf(node) != TileResidency::State::Nothing;
   if (drawable && (!drawnOnly || node.selectedFrame + 1 == frame_)) {
-    residency_->keep(node.index);
+    keep(node);
     draw(number, demand);
     return true;
   }
@@ -390,6 +457,7 @@ void ChunkTree::Implementation::split(NodeNumber number) {
     const auto place = static_cast<std::size_t>(i);
     const NodeNumber child = pool_.take(children.index[place], number);
     pool_[number].children[place] = child;
+    pool_[child].colourLevel = pool_[number].colourLevel;
   }
   pool_[number].childCount = children.count;
 }
@@ -398,15 +466,16 @@ void ChunkTree::Implementation::draw(NodeNumber number, const Demand& demand) {
   const ChunkNode& node = pool_[number];
   SelectedChunk chunk;
   chunk.index = node.index;
+  chunk.colourLevel = node.colourLevel;
   chunk.views = demand.views;
   chunk.distance = demand.distance;
   for (chunk.step = 0;; ++chunk.step) {
     chunk.error = residency_->geometricError(node.index, chunk.step);
-    if (chunk.step == finestStep || chunk.error * demand.pixelsPerMetre <= settings_.maximumErrorPixels) {
+    if (chunk.step == finestStep || chunk.error * demand.drawnPixelsPerMetre <= settings_.maximumErrorPixels) {
       break;
     }
   }
-  residency_->keep(node.index);
+  keep(node);
   selected_.push_back(chunk);
   numbers_.push_back(number);
 }

@@ -18,7 +18,8 @@ struct ChunkNode {
   TileIndex index;
   NodeNumber parent = noNode;
   std::array<NodeNumber, 4> children{noNode, noNode, noNode, noNode};
-  std::int32_t childCount = 0;  ///< 0 until it was split
+  std::int32_t childCount = 0;   ///< 0 until it was split
+  std::int32_t colourLevel = 0;  ///< of the tile whose composite it draws
   std::uint64_t visitedFrame = 0;
   std::uint64_t selectedFrame = 0;
   std::uint64_t belowFrame = 0;  ///< the last frame in which something below it was selected

@@ -36,6 +36,7 @@ struct SelectionSettings {
 /// A chunk to draw.
 struct SelectedChunk {
   TileIndex index;
+  int colourLevel = 0;      ///< of the tile whose composite it draws: its own level or an ancestor's
   int step = 0;             ///< 0..4: 2, 4, 8, 16, 32 segments a side
   std::uint32_t views = 0;  ///< bit i: visible in view i, of the first 32
   double distance = 0.0;    ///< metres, from the nearest camera to the nearest point of its bounds

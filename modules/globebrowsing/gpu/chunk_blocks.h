@@ -27,7 +27,8 @@ struct ChunkBlock {
   glm::vec4 layers{-1.0F};  ///< array layers of base, night and overlay composite and of the normals; below 0: none
   float skirt = 0.0F;
   float level = 0.0F;
-  std::array<float, 2> padding{};
+  float normalScale = 0.0F;  ///< normal offset = (texel * 255 - 128) / 127 * this
+  float padding = 0.0F;
 };
 static_assert(sizeof(ChunkBlock) == 144);
 

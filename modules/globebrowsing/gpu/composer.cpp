@@ -236,10 +236,16 @@ bool Composer::ownProgramReady(CompositeKind kind) const {
   return graphics_.programs().ready(halfSize_) != 0 && graphics_.programs().ready(own.program) != 0;
 }
 
+bool Composer::ownProgramFailed(CompositeKind kind) const {
+  const Kind& own = kinds_[static_cast<std::size_t>(kind)];
+  return own.program && !graphics_.programs().get(own.program);
+}
+
 std::string Composer::programError() const {
-  for (const Kind& kind : kinds_) {
-    if (kind.requested) {
-      if (const Result<GLuint> built = graphics_.programs().get(kind.program); !built) {
+  for (const graphics::ProgramHandle* handle :
+       {&halfSize_, &loop_, &kinds_[0].program, &kinds_[1].program, &kinds_[2].program}) {
+    if (*handle) {
+      if (const Result<GLuint> built = graphics_.programs().get(*handle); !built) {
         return built.error().message();
       }
     }

@@ -55,6 +55,8 @@ class Composer {
   [[nodiscard]] bool ready(CompositeKind kind) const { return program(kind) != 0; }
   /// Whether the structure's own program is.
   [[nodiscard]] bool ownProgramReady(CompositeKind kind) const;
+  /// Whether it cannot be built; the looping one then stays.
+  [[nodiscard]] bool ownProgramFailed(CompositeKind kind) const;
   /// The compiler's complaint about a program that cannot be built, else empty.
   [[nodiscard]] std::string programError() const;
 
@@ -62,6 +64,11 @@ class Composer {
   void endFrame();
   /// Composes into that array layer. False when the raw tiles of this frame fill their pool: try in the next frame.
   bool compose(std::uint32_t slot, CompositeKind kind, std::span<const CompositionPart> parts);
+
+  /// Bytes of the raw tiles that are there.
+  [[nodiscard]] std::size_t rawTileBytes() const { return rawSlots_.used() * bytesPerRawTile(); }
+  /// No composite can have more layers with tiles.
+  [[nodiscard]] std::uint32_t rawTileCapacity() const { return rawSlots_.capacity(); }
 
   /// What composing that many layers takes: a fetch per texel and layer, and once more for the half-size levels, at the
   /// rates of a software renderer (400 million a second, measured) or of a modest graphics card.

@@ -58,7 +58,6 @@ CompositeStore::CompositeStore(std::shared_ptr<const Tiling> tiling, LayerManage
 
 void CompositeStore::beginFrame(std::uint64_t frame) {
   frame_ = frame;
-  full_ = false;
   missing_ = 0;
   requests_.clear();
   parts_.clear();
@@ -70,6 +69,7 @@ void CompositeStore::beginFrame(std::uint64_t frame) {
     std::uint64_t& version = versions_[static_cast<std::size_t>(kind)];
     changed = changed || version != group.settingsVersion();
     version = group.settingsVersion();
+    openings_[static_cast<std::size_t>(kind)].update(group);
     if (inUse(kind)) {
       composer_->setStructure(kind, group.structureKey());
     }
@@ -114,8 +114,8 @@ bool CompositeStore::hasFiner(const TileIndex& index) const {
   return facts(index).finer;
 }
 
-TileIndex CompositeStore::owner(CompositeKind kind, const TileIndex& index) const {
-  const int level = facts(index).ownerLevel[static_cast<std::size_t>(kind)];
+TileIndex CompositeStore::owner(CompositeKind kind, const TileIndex& index, int colourLevel) const {
+  const int level = std::min<int>(colourLevel, facts(index).ownerLevel[static_cast<std::size_t>(kind)]);
   TileIndex found = index;
   while (found.level > level) {
     found = *tiling_->parent(found);
@@ -128,22 +128,22 @@ CompositeStore::State CompositeStore::stateOf(const CompositeKey& key) const {
   return {slot.has_value(), slot && slotVersions_[*slot] == versions_[static_cast<std::size_t>(key.kind)]};
 }
 
-CompositeStore::State CompositeStore::state(const TileIndex& index) const {
+CompositeStore::State CompositeStore::state(const TileIndex& index, int colourLevel) const {
   State all;
   for (const CompositeKind kind : allCompositeKinds) {
     if (inUse(kind)) {
-      const State one = stateOf({kind, owner(kind, index)});
+      const State one = stateOf({kind, owner(kind, index, colourLevel)});
       all = {all.present && one.present, all.current && one.current};
     }
   }
   return all;
 }
 
-CompositeStore::State CompositeStore::want(const TileIndex& index, double priority) {
+CompositeStore::State CompositeStore::want(const TileIndex& index, int colourLevel, double priority) {
   State all;
   for (const CompositeKind kind : allCompositeKinds) {
     if (inUse(kind)) {
-      const State one = wantComposite({kind, owner(kind, index)}, priority);
+      const State one = wantComposite({kind, owner(kind, index, colourLevel)}, priority);
       all = {all.present && one.present, all.current && one.current};
     }
   }
@@ -156,10 +156,12 @@ CompositeStore::State CompositeStore::wantComposite(const CompositeKey& key, dou
   if (state.current) {
     return state;
   }
-  ++missing_;
   // Many chunks may draw the same ancestor's composite.
-  const bool known = std::any_of(requests_.begin(), requests_.end(), [&](const Request& r) { return r.key == key; });
-  if (!known && composer_->ready(key.kind)) {
+  if (std::any_of(requests_.begin(), requests_.end(), [&](const Request& r) { return r.key == key; })) {
+    return state;
+  }
+  ++missing_;
+  if (composer_->ready(key.kind) && !openings_[static_cast<std::size_t>(key.kind)].waits()) {
     Request request{key, priority, parts_.size(), 0};
     if (gather(key, priority)) {
       request.partCount = parts_.size() - request.firstPart;
@@ -196,10 +198,10 @@ bool CompositeStore::gather(const CompositeKey& key, double priority) {
   return all;
 }
 
-void CompositeStore::keep(const TileIndex& index) {
+void CompositeStore::keep(const TileIndex& index, int colourLevel) {
   for (const CompositeKind kind : allCompositeKinds) {
     if (inUse(kind)) {
-      slots_.use({kind, owner(kind, index)}, frame_);
+      slots_.use({kind, owner(kind, index, colourLevel)}, frame_);
     }
   }
 }
@@ -208,44 +210,61 @@ void CompositeStore::compose(double milliseconds) {
   std::sort(requests_.begin(), requests_.end(),
             [](const Request& a, const Request& b) { return a.priority > b.priority; });
   double spent = 0.0;
+  unplaced_ = 0;
   for (const Request& request : requests_) {
-    if (spent >= milliseconds || !composeOne(request)) {
+    if (spent >= milliseconds) {
       break;
+    }
+    const Composed composed = composeOne(request);
+    if (composed == Composed::NoRawTiles) {
+      break;
+    }
+    if (composed == Composed::NoSlot) {
+      ++unplaced_;  // those after it may have a slot already
+      continue;
     }
     --missing_;
     spent += composer_->estimatedMilliseconds(request.partCount);
   }
 }
 
-bool CompositeStore::composeOne(const Request& request) {
+void CompositeStore::tellFull() {
+  if (!toldFull_) {
+    log::warning("the texture pool has no room for all composites of this view; raise TexturePoolSize");
+    toldFull_ = true;
+  }
+}
+
+CompositeStore::Composed CompositeStore::composeOne(const Request& request) {
   std::optional<std::uint32_t> slot = slots_.use(request.key, frame_);
-  if (!slot) {
+  const bool had = slot.has_value();
+  if (!had) {
     slot = slots_.take(request.key, frame_, [](const CompositeKey&) {});
   }
   if (!slot) {
-    if (!toldFull_) {
-      log::warning("the texture pool has no room for all composites of this view; raise TexturePoolSize");
-      toldFull_ = true;
-    }
-    full_ = true;
-    return false;
+    tellFull();
+    return Composed::NoSlot;
   }
   const std::span<const CompositionPart> parts(parts_.data() + request.firstPart, request.partCount);
   if (!composer_->compose(*slot, request.key.kind, parts)) {
-    slots_.release([&](const CompositeKey& key) { return key == request.key; });
-    return false;
+    if (!had) {
+      slots_.release([&](const CompositeKey& key) { return key == request.key; });
+    }
+    return Composed::NoRawTiles;
   }
   slotVersions_[*slot] = versions_[static_cast<std::size_t>(request.key.kind)];
-  return true;
+  return Composed::Done;
 }
 
-std::optional<CompositeStore::Placement> CompositeStore::place(CompositeKind kind, const TileIndex& index) {
+std::optional<CompositeStore::Placement> CompositeStore::place(CompositeKind kind, const TileIndex& index,
+                                                               int colourLevel) {
   UnitSquareTransform transform;
   TileIndex at = index;
-  const int ownerLevel = facts(index).ownerLevel[static_cast<std::size_t>(kind)];
+  const int ownerLevel = std::min<int>(colourLevel, facts(index).ownerLevel[static_cast<std::size_t>(kind)]);
   while (true) {
     if (at.level <= ownerLevel) {
-      if (const std::optional<std::uint32_t> slot = slots_.use({kind, at}, frame_)) {
+      // What this frame draws must still be there when the next composes, or chunks without a composite would flicker.
+      if (const std::optional<std::uint32_t> slot = slots_.use({kind, at}, frame_ + 1)) {
         return Placement{*slot, textureTransform(transform)};
       }
     }
@@ -266,11 +285,12 @@ std::string CompositeStore::waitingFor() const {
         return fmt::format("{} is being opened", layer->uri());
       }
     }
-    if (inUse(kind) && !composer_->ownProgramReady(kind)) {
+    if (inUse(kind) && !composer_->ownProgramReady(kind) && !composer_->ownProgramFailed(kind)) {
       return "a composition program is being built";
     }
   }
-  return missing_ > 0 ? fmt::format("{} composites are waiting", missing_) : std::string();
+  const std::size_t waiting = missing_ - unplaced_;
+  return waiting > 0 ? fmt::format("{} composites are waiting", waiting) : std::string();
 }
 
 }  // namespace meridian::globebrowsing

@@ -12,6 +12,7 @@
 
 #include "globebrowsing/gpu/composer.h"
 #include "globebrowsing/gpu/composite_kind.h"
+#include "globebrowsing/gpu/opening_wait.h"
 #include "globebrowsing/gpu/slot_pool.h"
 #include "globebrowsing/layers/layer_manager.h"
 #include "globebrowsing/streaming/tile_streamer.h"
@@ -54,11 +55,11 @@ class CompositeStore {
     bool present = true;  ///< every kind in use has the tile's own composite, if only of an earlier setting
     bool current = true;  ///< and they are of the present structure and settings
   };
-  /// Asks for what the tile's colours lack.
-  State want(const TileIndex& index, double priority);
+  /// Asks for what the tile's colours lack; it draws composites of at most that level.
+  State want(const TileIndex& index, int colourLevel, double priority);
   /// The same without asking.
-  [[nodiscard]] State state(const TileIndex& index) const;
-  void keep(const TileIndex& index);
+  [[nodiscard]] State state(const TileIndex& index, int colourLevel) const;
+  void keep(const TileIndex& index, int colourLevel);
   /// Composes what has all its raw tiles, greatest priority first, for about that long; at least one each frame.
   /// Drivers draw later than they are told, so the time is reckoned from the texels, not measured.
   void compose(double milliseconds);
@@ -71,15 +72,19 @@ class CompositeStore {
     std::uint32_t slot = 0;
     glm::vec4 transform{0.0F};  ///< texture coordinate = xy + zw * unit square of the chunk
   };
-  [[nodiscard]] std::optional<Placement> place(CompositeKind kind, const TileIndex& index);
+  [[nodiscard]] std::optional<Placement> place(CompositeKind kind, const TileIndex& index, int colourLevel);
 
   /// Whether any enabled layer is of that kind; Base always is in use.
   [[nodiscard]] bool inUse(CompositeKind kind) const;
   [[nodiscard]] const Composer& composer() const { return *composer_; }
   /// Why what is asked for is not complete, or an empty string.
   [[nodiscard]] std::string waitingFor() const;
-  /// Whether this frame asked for more composites than the pool can hold: what is missing then stays missing.
-  [[nodiscard]] bool full() const { return full_; }
+  /// Whether the last compose() had more composites to hold than the pool can: what is missing then stays missing.
+  [[nodiscard]] bool full() const { return unplaced_ > 0; }
+  /// Bytes of the composites and raw tiles that are there.
+  [[nodiscard]] std::size_t residentBytes() const {
+    return slots_.used() * Composer::bytesPerComposite() + composer_->rawTileBytes();
+  }
 
  private:
   /// What is known of a tile's colours as long as no layer changes.
@@ -96,11 +101,13 @@ class CompositeStore {
 
   [[nodiscard]] const Facts& facts(const TileIndex& index) const;
   [[nodiscard]] bool anyFiner(CompositeKind kind, const TileIndex& index) const;
-  [[nodiscard]] TileIndex owner(CompositeKind kind, const TileIndex& index) const;
+  [[nodiscard]] TileIndex owner(CompositeKind kind, const TileIndex& index, int colourLevel) const;
   State wantComposite(const CompositeKey& key, double priority);
   [[nodiscard]] State stateOf(const CompositeKey& key) const;
   bool gather(const CompositeKey& key, double priority);
-  bool composeOne(const Request& request);
+  enum class Composed { Done, NoSlot, NoRawTiles };
+  Composed composeOne(const Request& request);
+  void tellFull();
 
   std::shared_ptr<const Tiling> tiling_;
   LayerManager& layers_;
@@ -109,14 +116,15 @@ class CompositeStore {
   SlotPool<CompositeKey> slots_;
   std::vector<std::uint64_t> slotVersions_;  ///< of what each slot's composite was made from
   std::array<std::uint64_t, compositeKindCount> versions_{};
+  std::array<OpeningWait, compositeKindCount> openings_;
   mutable std::unordered_map<TileIndex, Facts> facts_;
   std::vector<Request> requests_;
   std::vector<CompositionPart> parts_;
   std::vector<TileDataPointer> held_;  ///< the raw tiles of parts_
   std::uint64_t frame_ = 0;
-  bool full_ = false;
   bool toldFull_ = false;
-  std::size_t missing_ = 0;
+  std::size_t missing_ = 0;   ///< composites wanted in this frame that are not current
+  std::size_t unplaced_ = 0;  ///< of these, those that have their raw tiles but no room
 };
 
 }  // namespace meridian::globebrowsing

@@ -20,17 +20,19 @@ constexpr double unknownRelief = 0.02;
 Result<std::unique_ptr<GlobeTiles>> GlobeTiles::create(graphics::Graphics& graphics,
                                                        std::shared_ptr<const Tiling> tiling, LayerManager& layers,
                                                        TileStreamer& streamer, const Options& options) {
-  // A sixth of the pool is shapes, the rest colours: two composites to each raw tile.
+  // A sixth of the pool is shapes, the rest colours. Raw tiles are needed only while they are composed: one to every
+  // four composites.
   const std::size_t surfaceBytes = options.texturePoolBytes / 6;
   const std::size_t colourBytes = options.texturePoolBytes - surfaceBytes;
-  const std::size_t colourUnit = 2 * Composer::bytesPerComposite() + Composer::bytesPerRawTile();
+  const std::size_t units = colourBytes / (4 * Composer::bytesPerComposite() + Composer::bytesPerRawTile());
   const auto layersOfArray = [&](std::size_t count) {
     const auto most = static_cast<std::size_t>(graphics.limits().textureLayers);
     return static_cast<std::uint32_t>(std::clamp<std::size_t>(count, 8, most));
   };
   const std::uint32_t surfaces = layersOfArray(surfaceBytes / SurfacePool::bytesPerSlot());
-  const std::uint32_t composites = layersOfArray(2 * (colourBytes / colourUnit));
-  const std::uint32_t rawTiles = layersOfArray(colourBytes / colourUnit);
+  const std::uint32_t rawTiles = layersOfArray(std::max<std::size_t>(units, options.leastRawTiles));
+  const std::size_t rawBytes = std::min(colourBytes, rawTiles * Composer::bytesPerRawTile());
+  const std::uint32_t composites = layersOfArray((colourBytes - rawBytes) / Composer::bytesPerComposite());
   return Composer::create(graphics, {composites, rawTiles}).map([&](std::unique_ptr<Composer> composer) {
     return std::unique_ptr<GlobeTiles>(
         new GlobeTiles(std::move(tiling), layers, streamer, std::move(composer), surfaces, composites));
@@ -55,24 +57,24 @@ void GlobeTiles::process(graphics::UploadBudget& uploads, double compositionMill
   composites_.endFrame();
 }
 
-void GlobeTiles::want(const TileIndex& index, double priority) {
+void GlobeTiles::want(const TileIndex& index, int colourLevel, double priority) {
   const bool shaped = surfaces_.want(index, priority);
-  const bool coloured = composites_.want(index, priority).current;
+  const bool coloured = composites_.want(index, colourLevel, priority).current;
   stale_ += shaped && coloured ? 0 : 1;
 }
 
-void GlobeTiles::keep(const TileIndex& index) {
+void GlobeTiles::keep(const TileIndex& index, int colourLevel) {
   surfaces_.keep(index);
-  composites_.keep(index);
+  composites_.keep(index, colourLevel);
 }
 
-TileResidency::State GlobeTiles::state(const TileIndex& index) const {
+TileResidency::State GlobeTiles::state(const TileIndex& index, int colourLevel) const {
   if (surfaces_.find(index) == nullptr) {
     return State::Nothing;
   }
   // Colours of an earlier setting count: they are exchanged in place, and must not make the tree draw something
   // coarser.
-  return composites_.state(index).present || composites_.full() ? State::Complete : State::Drawable;
+  return composites_.state(index, colourLevel).present || composites_.full() ? State::Complete : State::Drawable;
 }
 
 HeightRange GlobeTiles::heightRange(const TileIndex& index) const {
@@ -107,7 +109,7 @@ std::string GlobeTiles::waitingFor() const {
       return reason;
     }
   }
-  return stale_ > 0 && !composites_.full() ? fmt::format("{} tiles are loading", stale_) : std::string();
+  return stale_ > 0 && !full() ? fmt::format("{} tiles are loading", stale_) : std::string();
 }
 
 }  // namespace meridian::globebrowsing

@@ -14,6 +14,9 @@ class GlobeTiles final : public TileResidency {
  public:
   struct Options {
     std::size_t texturePoolBytes = std::size_t{512} << 20;
+    /// At least as many as one composite has layers with tiles, whatever that takes.
+    std::uint32_t leastRawTiles = 8;
+    bool operator==(const Options&) const = default;
   };
   /// Tiling, layers and streamer must outlive it. Errors: shader templates missing or wrong.
   [[nodiscard]] static Result<std::unique_ptr<GlobeTiles>> create(graphics::Graphics& graphics,
@@ -25,9 +28,9 @@ class GlobeTiles final : public TileResidency {
   /// Uploads and composes under the frame's budgets. After selection.
   void process(graphics::UploadBudget& uploads, double compositionMilliseconds);
 
-  void want(const TileIndex& index, double priority) override;
-  void keep(const TileIndex& index) override;
-  [[nodiscard]] State state(const TileIndex& index) const override;
+  void want(const TileIndex& index, int colourLevel, double priority) override;
+  void keep(const TileIndex& index, int colourLevel) override;
+  [[nodiscard]] State state(const TileIndex& index, int colourLevel) const override;
   [[nodiscard]] HeightRange heightRange(const TileIndex& index) const override;
   [[nodiscard]] unsigned heightVersion(const TileIndex& index) const override;
   [[nodiscard]] double geometricError(const TileIndex& index, int step) const override;
@@ -36,6 +39,10 @@ class GlobeTiles final : public TileResidency {
   [[nodiscard]] const SurfaceStore& surfaces() const { return surfaces_; }
   [[nodiscard]] CompositeStore& composites() { return composites_; }
   [[nodiscard]] const CompositeStore& composites() const { return composites_; }
+  /// Bytes of all that is in the texture pool.
+  [[nodiscard]] std::size_t residentBytes() const { return surfaces_.residentBytes() + composites_.residentBytes(); }
+  /// Whether the pool is too small for the view: what is missing then stays missing.
+  [[nodiscard]] bool full() const { return surfaces_.full() || composites_.full(); }
   /// What the tiles that were wanted in this frame still lack, or an empty string.
   [[nodiscard]] std::string waitingFor() const;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -24,13 +25,14 @@ class SlotPool {
     return found == byKey_.end() ? std::nullopt : std::optional(found->second);
   }
 
-  /// The key's slot, marked as used in that frame.
+  /// The key's slot, marked as used in that frame; a later mark stays.
   std::optional<std::uint32_t> use(const Key& key, std::uint64_t frame) {
     const auto found = byKey_.find(key);
     if (found == byKey_.end()) {
       return std::nullopt;
     }
-    slots_[found->second].lastUsed = frame;
+    std::uint64_t& lastUsed = slots_[found->second].lastUsed;
+    lastUsed = std::max(lastUsed, frame);
     return found->second;
   }
 

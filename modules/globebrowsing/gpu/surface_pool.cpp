@@ -43,7 +43,7 @@ void SurfacePool::describeVertices(GLuint vertexArray, GLuint vertexBuffer) {
 void SurfacePool::upload(std::uint32_t slot, const ChunkSurface& surface) const {
   vertices_.write(slotBytes * static_cast<GLsizeiptr>(slot), slotBytes, surface.vertices().data());
   glTextureSubImage3D(normals_.id(), 0, 0, 0, static_cast<GLint>(slot), ChunkSurface::nodes, ChunkSurface::nodes, 1,
-                      GL_RGBA, GL_SHORT, surface.normalOffsets().data());
+                      GL_RGBA, GL_UNSIGNED_BYTE, surface.normalOffsets().data());
 }
 
 void SurfacePool::bind(GLuint normalUnit) const {

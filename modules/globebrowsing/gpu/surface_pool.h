@@ -36,7 +36,7 @@ class SurfacePool {
 
   /// The vertex layout alone, for warm-up draws on another context.
   static void describeVertices(GLuint vertexArray, GLuint vertexBuffer);
-  static constexpr GLenum normalFormat = GL_RGBA16_SNORM;
+  static constexpr GLenum normalFormat = GL_RGBA8;
 
  private:
   void drawElements(std::uint32_t slot, int step, int count) const;

@@ -6,6 +6,7 @@
 
 #include "globebrowsing/layers/compose_heights.h"
 #include "globebrowsing/providers/raw_tile.h"
+#include "host/api/log.h"
 
 namespace meridian::globebrowsing {
 
@@ -78,6 +79,7 @@ void SurfaceStore::beginFrame(std::uint64_t frame) {
     stream_ = streamer_.newStream();
     gathered_.resize(heights.enabledLayers().size());
   }
+  opening_.update(heights);
 }
 
 bool SurfaceStore::gather(const TileIndex& index, double priority) {
@@ -100,6 +102,9 @@ bool SurfaceStore::want(const TileIndex& index, double priority) {
   const auto resident = resident_.find(index);
   if (resident != resident_.end() && resident->second.stream == stream_) {
     return true;
+  }
+  if (opening_.waits()) {
+    return false;
   }
   const TileKey key{stream_, index};
   TileAnswer answer = streamer_.peek(key);
@@ -130,22 +135,27 @@ void SurfaceStore::upload(graphics::UploadBudget& budget) {
   std::sort(arrivals_.begin(), arrivals_.end(),
             [](const Arrival& a, const Arrival& b) { return a.priority > b.priority; });
   const graphics::UploadBudget::Span span(budget);
+  full_ = false;
   for (const Arrival& arrival : arrivals_) {
     if (!budget.left()) {
       break;
     }
-    place(arrival);
+    full_ = !place(arrival) || full_;
+  }
+  if (full_ && !toldFull_) {
+    log::warning("the texture pool has no room for all surfaces of this view; raise TexturePoolSize");
+    toldFull_ = true;
   }
   arrivals_.clear();
 }
 
-void SurfaceStore::place(const Arrival& arrival) {
+bool SurfaceStore::place(const Arrival& arrival) {
   std::optional<std::uint32_t> slot = pool_.slots().use(arrival.index, frame_);
   if (!slot) {
     slot = pool_.slots().take(arrival.index, frame_, [this](const TileIndex& evicted) { resident_.erase(evicted); });
   }
   if (!slot) {
-    return;
+    return false;
   }
   auto surface = std::static_pointer_cast<const ChunkSurface>(arrival.data);
   pool_.upload(*slot, *surface);
@@ -153,6 +163,7 @@ void SurfaceStore::place(const Arrival& arrival) {
   highest_ = std::max(highest_, surface->heightRange().maximum);
   resident_[arrival.index] = {std::move(surface), stream_, ++lastStamp_};
   deepest_ = std::max(deepest_, int{arrival.index.level});
+  return true;
 }
 
 const ChunkSurface* SurfaceStore::find(const TileIndex& index) const {

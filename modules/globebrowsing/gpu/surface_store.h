@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "globebrowsing/gpu/opening_wait.h"
 #include "globebrowsing/gpu/surface_pool.h"
 #include "globebrowsing/layers/chunk_surface.h"
 #include "globebrowsing/layers/layer_manager.h"
@@ -50,6 +51,10 @@ class SurfaceStore {
   [[nodiscard]] double lowestHeight() const { return lowest_; }
   /// The greatest, at least 0.
   [[nodiscard]] double highestHeight() const { return highest_; }
+  /// Whether the last upload() had more surfaces to hold than the pool can: what is missing then stays missing.
+  [[nodiscard]] bool full() const { return full_; }
+  /// Bytes of the surfaces that are there.
+  [[nodiscard]] std::size_t residentBytes() const { return pool_.slots().used() * SurfacePool::bytesPerSlot(); }
   /// Height layers whose data are being opened, or an empty string.
   [[nodiscard]] std::string waitingFor() const;
 
@@ -67,7 +72,8 @@ class SurfaceStore {
 
   /// Whether the raw heights of all layers are there (or will never be); asks for those that are missing.
   bool gather(const TileIndex& index, double priority);
-  void place(const Arrival& arrival);
+  /// False when the pool is full.
+  bool place(const Arrival& arrival);
 
   std::shared_ptr<const Tiling> tiling_;
   LayerManager& layers_;
@@ -76,10 +82,13 @@ class SurfaceStore {
   std::unordered_map<TileIndex, Resident> resident_;
   std::vector<Arrival> arrivals_;
   std::vector<TileAnswer> gathered_;  ///< by enabled height layer, of the tile being looked at
+  OpeningWait opening_;
   std::uint64_t frame_ = 0;
   std::uint64_t heightsVersion_ = 0;
   std::uint32_t stream_ = 0;  ///< of surfaces composed from the present version of the height layers
   unsigned lastStamp_ = 0;
+  bool full_ = false;
+  bool toldFull_ = false;
   int deepest_ = 0;
   double lowest_ = 0.0;
   double highest_ = 0.0;

@@ -29,8 +29,8 @@ std::array<float, 3> narrow(const glm::dvec3& vector) {
   return {static_cast<float>(vector.x), static_cast<float>(vector.y), static_cast<float>(vector.z)};
 }
 
-std::int16_t signedNormalised(double value) {
-  return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0, 1.0) * 32767.0));
+std::uint8_t signedByte(double value) {
+  return static_cast<std::uint8_t>(128 + std::lround(std::clamp(value, -1.0, 1.0) * 127.0));
 }
 
 }  // namespace
@@ -95,24 +95,39 @@ void ChunkSurface::makeVertices(const Nodes& all) {
 }
 
 void ChunkSurface::makeNormals(const Nodes& all) {
-  normalOffsets_.resize(static_cast<std::size_t>(nodes) * nodes);
-  std::size_t out = 0;
+  std::vector<glm::dvec3> offsets;
+  offsets.reserve(static_cast<std::size_t>(nodes) * nodes);
+  cone_.axis = all.normals[Nodes::at(nodes / 2, nodes / 2)];
+  double leastCosine = 1.0;
   for (int row = 0; row < nodes; ++row) {
     for (int column = 0; column < nodes; ++column) {
       const glm::dvec3& vertical = all.normals[Nodes::at(column, row)];
-      const glm::dvec3 east = all.positions[Nodes::at(column + 1, row)] - all.positions[Nodes::at(column - 1, row)];
-      const glm::dvec3 south = all.positions[Nodes::at(column, row + 1)] - all.positions[Nodes::at(column, row - 1)];
-      const glm::dvec3 across = glm::cross(south, east);
-      const double length = glm::length(across);
-      // At a pole a whole row is one point: there the ellipsoid's normal has to do.
-      glm::dvec3 normal = length > 1e-9 * glm::dot(south, south) ? across / length : vertical;
-      if (glm::dot(normal, vertical) < 0.0) {
-        normal = -normal;
-      }
-      const glm::dvec3 offset = normal - vertical;
-      normalOffsets_[out++] = {signedNormalised(offset.x), signedNormalised(offset.y), signedNormalised(offset.z), 0};
+      leastCosine = std::min(leastCosine, glm::dot(vertical, cone_.axis));
+      offsets.push_back(surfaceNormal(all, column, row) - vertical);
+      const glm::dvec3 size = glm::abs(offsets.back());
+      normalScale_ = std::max({normalScale_, size.x, size.y, size.z});
     }
   }
+  cone_.angle = std::acos(std::clamp(leastCosine, -1.0, 1.0));
+  const double unit = normalScale_ > 0.0 ? 1.0 / normalScale_ : 0.0;
+  normalOffsets_.reserve(offsets.size());
+  for (const glm::dvec3& offset : offsets) {
+    normalOffsets_.push_back(
+        {signedByte(offset.x * unit), signedByte(offset.y * unit), signedByte(offset.z * unit), 0});
+  }
+}
+
+glm::dvec3 ChunkSurface::surfaceNormal(const Nodes& all, int column, int row) {
+  const glm::dvec3& vertical = all.normals[Nodes::at(column, row)];
+  const glm::dvec3 east = all.positions[Nodes::at(column + 1, row)] - all.positions[Nodes::at(column - 1, row)];
+  const glm::dvec3 south = all.positions[Nodes::at(column, row + 1)] - all.positions[Nodes::at(column, row - 1)];
+  const glm::dvec3 across = glm::cross(south, east);
+  const double length = glm::length(across);
+  // At a pole a whole row is one point: there the ellipsoid's normal has to do.
+  if (!(length > 1e-9 * glm::dot(south, south))) {
+    return vertical;
+  }
+  return glm::dot(across, vertical) < 0.0 ? -across / length : across / length;
 }
 
 double ChunkSurface::errorAt(const Nodes& all, int step) const {

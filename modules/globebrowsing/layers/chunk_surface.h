@@ -32,8 +32,10 @@ class ChunkSurface final : public TileData {
   static constexpr int nodes = 129;  ///< a side, node-registered: the first and last lie on the edges
   static constexpr int apron = 1;    ///< nodes beyond each edge, for normals
   static constexpr int heightSide = nodes + 2 * apron;
-  /// A texel of the normals, signed 16-bit normalised: unit surface normal minus ellipsoid normal, in model space.
-  using NormalOffset = std::array<std::int16_t, 4>;
+  /// A texel of the normals: unit surface normal minus ellipsoid normal, in model space, each component as
+  /// (value - 128) / 127 * normalScale(), so that 0 is exact and gentle tiles get the finest steps. (Bytes, because
+  /// software renderers filter them several times faster than anything wider.)
+  using NormalOffset = std::array<std::uint8_t, 4>;
 
   /// `heights`: heightSide x heightSide metres, row by row from the north-west, none of them not-a-number.
   ChunkSurface(const Tiling& tiling, const TileIndex& index, std::vector<float> heights);
@@ -46,6 +48,14 @@ class ChunkSurface final : public TileData {
   [[nodiscard]] std::span<const SurfaceVertex> vertices() const { return vertices_; }
   /// nodes x nodes, rows from the north.
   [[nodiscard]] std::span<const NormalOffset> normalOffsets() const { return normalOffsets_; }
+  /// The largest component of any normal offset; 0 for a flat tile.
+  [[nodiscard]] double normalScale() const { return normalScale_; }
+  /// All of the tile's ellipsoid normals are within `angle` radians of `axis`.
+  struct NormalCone {
+    glm::dvec3 axis{0.0, 0.0, 1.0};
+    double angle = 0.0;
+  };
+  [[nodiscard]] const NormalCone& normalCone() const { return cone_; }
   /// Bilinear between the nodes; uv is clamped to the tile.
   [[nodiscard]] double heightAt(const glm::dvec2& uv) const;
 
@@ -54,9 +64,10 @@ class ChunkSurface final : public TileData {
  private:
   struct Nodes;
   [[nodiscard]] float height(int column, int row) const;
-  void makeVertices(const Nodes& nodes);
-  void makeNormals(const Nodes& nodes);
-  [[nodiscard]] double errorAt(const Nodes& nodes, int step) const;
+  void makeVertices(const Nodes& all);
+  void makeNormals(const Nodes& all);
+  [[nodiscard]] static glm::dvec3 surfaceNormal(const Nodes& all, int column, int row);
+  [[nodiscard]] double errorAt(const Nodes& all, int step) const;
 
   std::vector<float> heights_;
   std::array<glm::dvec3, 4> corners_{};
@@ -64,6 +75,8 @@ class ChunkSurface final : public TileData {
   std::array<double, chunk_grid::steps> errors_{};
   std::vector<SurfaceVertex> vertices_;
   std::vector<NormalOffset> normalOffsets_;
+  double normalScale_ = 0.0;
+  NormalCone cone_;
 };
 
 /// The point of the patch that four corners (north-west, north-east, south-west, south-east) span.

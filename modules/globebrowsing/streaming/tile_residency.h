@@ -23,12 +23,15 @@ class TileResidency {
 
   virtual ~TileResidency() = default;
 
+  // `colourLevel`: of the tile whose composite the tile draws, its own level or an ancestor's. A tile that is there
+  // because relief needs it draws the composite of the tile at which colours were fine enough.
+
   /// Asks for all that the tile needs, this frame; a greater priority is served first. What is not asked for again in
   /// the next frame is cancelled or becomes evictable.
-  virtual void want(const TileIndex& index, double priority) = 0;
+  virtual void want(const TileIndex& index, int colourLevel, double priority) = 0;
   /// Keeps what the tile has from being evicted this frame, without asking for more.
-  virtual void keep(const TileIndex& index) = 0;
-  [[nodiscard]] virtual State state(const TileIndex& index) const = 0;
+  virtual void keep(const TileIndex& index, int colourLevel) = 0;
+  [[nodiscard]] virtual State state(const TileIndex& index, int colourLevel) const = 0;
 
   /// Of the tile's own height tile, else of its nearest ancestor with one, else of the layers' declared range.
   [[nodiscard]] virtual HeightRange heightRange(const TileIndex& index) const = 0;

@@ -8,22 +8,15 @@
 #include "globebrowsing/chunks/selection.h"
 #include "globebrowsing/gpu/globe_tiles.h"
 #include "globebrowsing/gpu/uniform_ring.h"
+#include "globebrowsing/surface/chunk_programs.h"
 #include "globebrowsing/surface/surface.h"
 #include "host/graphics/graphics.h"
 
 namespace meridian::globebrowsing {
 
-/// What the program that draws chunks depends on, beside the layers, which are composed before.
-struct ChunkProgramKey {
-  bool shading = true;
-  bool accurateNormals = false;
-  bool night = false;
-  bool overlay = false;
-  bool edges = false;
-
-  [[nodiscard]] std::string text() const;
-  bool operator==(const ChunkProgramKey&) const = default;
-};
+/// Whether no part of the chunk is dark enough for night layers to show, by the ellipsoid's normals. `light` is the
+/// unit direction towards the light, in model space.
+[[nodiscard]] bool isInDaylight(const ChunkSurface& surface, const glm::dvec3& light);
 
 /// Draws selected chunks: one program, two array textures and one vertex array for all, two uniform blocks. Render
 /// thread only; a steady frame allocates nothing.
@@ -31,11 +24,8 @@ class ChunkRenderer {
  public:
   explicit ChunkRenderer(graphics::Graphics& graphics);
 
-  /// Asks for the program of that key; until it is ready, the last one that was draws. Errors: shader templates.
-  [[nodiscard]] Result<void> setProgram(const ChunkProgramKey& key);
-  /// Whether the key's own program is ready.
-  [[nodiscard]] bool ownProgramReady() const { return graphics_.programs().ready(wanted_) != 0; }
-  [[nodiscard]] std::string programError() const;
+  [[nodiscard]] ChunkPrograms& programs() { return programs_; }
+  [[nodiscard]] const ChunkPrograms& programs() const { return programs_; }
 
   /// What one globe draws in one view.
   struct Job {
@@ -50,15 +40,18 @@ class ChunkRenderer {
   void endFrame() { uniforms_.endFrame(); }
   /// Draws into the bound framebuffer. How many chunks were drawn.
   std::size_t draw(const Job& job, GlobeTiles& tiles);
+  /// A program (with or without night layers), textures and state of draw(), for drawing something else the same way;
+  /// whether there is a program.
+  bool bindForDrawing(const GlobeTiles& tiles, bool night) const;
+  /// Back to the default state.
+  void unbind() const;
 
  private:
+  void useProgram(GLuint program);
   void drawChunk(const SelectedChunk& chunk, const Job& job, GlobeTiles& tiles);
 
-  graphics::Graphics& graphics_;
-  ChunkProgramKey key_;
-  ChunkProgramKey drawnKey_;
-  graphics::ProgramHandle wanted_;
-  graphics::ProgramHandle drawn_;  ///< the last that was ready
+  ChunkPrograms programs_;
+  GLuint inUse_ = 0;  ///< while draw() draws
   UniformRing uniforms_;
 };
 

@@ -29,10 +29,13 @@ void ChunkedSurface::update(const FrameContext& frame, const SurfaceSettings& se
   frameOpen_ = true;
   renderer_.beginFrame();
   tiles_->beginFrame(frame.number);
-  const ChunkProgramKey key{settings.shading, settings.shading && settings.accurateNormals,
+  const ChunkProgramKey key{settings.shading,
+                            settings.shading && settings.accurateNormals,
                             settings.shading && tiles_->composites().inUse(CompositeKind::Night),
-                            tiles_->composites().inUse(CompositeKind::Overlay), settings.showEdges};
-  if (const Result<void> program = renderer_.setProgram(key); !program) {
+                            tiles_->composites().inUse(CompositeKind::Overlay),
+                            settings.showEdges,
+                            settings.opacity < 1.0};
+  if (const Result<void> program = renderer_.programs().set(key); !program) {
     if (programTrouble_ != program.error().message()) {
       programTrouble_ = program.error().message();
       log::error("{}", programTrouble_);
@@ -70,16 +73,24 @@ Settled ChunkedSurface::settled(std::size_t /*view*/) const {
   if (!programTrouble_.empty()) {
     return {true, programTrouble_};
   }
-  if (const std::string error = renderer_.programError(); !error.empty()) {
+  if (const std::string error = renderer_.programs().error(); !error.empty()) {
     return {true, error};
   }
-  if (!renderer_.ownProgramReady()) {
+  if (!renderer_.programs().ready()) {
     return {false, "the program that draws chunks is being built"};
+  }
+  if (const Composer& composer = tiles_->composites().composer(); !composer.ready(CompositeKind::Base)) {
+    if (std::string error = composer.programError(); !error.empty()) {
+      return {true, std::move(error)};
+    }
   }
   if (std::string reason = tiles_->waitingFor(); !reason.empty()) {
     return {false, std::move(reason)};
   }
-  if (!tree_.figures().atTarget && !tiles_->composites().full()) {
+  if (tiles_->full()) {
+    return {true, "the texture pool is too small for this view; raise TexturePoolSize"};
+  }
+  if (!tree_.figures().atTarget) {
     return {false, fmt::format("{} chunks are not at their target", tree_.figures().missing)};
   }
   return {};

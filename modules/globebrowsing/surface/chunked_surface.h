@@ -27,12 +27,14 @@ class ChunkedSurface final : public Surface {
   void update(const FrameContext& frame, const SurfaceSettings& settings) override;
   void draw(const FrameContext& frame, std::size_t view) override;
   [[nodiscard]] Settled settled(std::size_t view) const override;
+  [[nodiscard]] std::size_t residentBytes() const override { return tiles_->residentBytes(); }
   [[nodiscard]] double heightAt(double latitude, double longitude) const override;
   [[nodiscard]] std::optional<glm::dvec3> pick(const glm::dvec3& origin, const glm::dvec3& direction) const override;
 
   [[nodiscard]] std::span<const SelectedChunk> selected() const { return tree_.selected(); }
   [[nodiscard]] const SelectionFigures& figures() const { return tree_.figures(); }
-  /// For benchmarks: without skirts, and the parts to draw the same with other means.
+  /// For benchmarks, which draw the same by other means.
+  [[nodiscard]] const Tiling& tiling() const { return *parts_.tiling; }
   [[nodiscard]] ChunkRenderer& renderer() { return renderer_; }
   [[nodiscard]] GlobeTiles& tiles() { return *tiles_; }
 

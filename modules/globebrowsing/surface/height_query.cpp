@@ -36,7 +36,7 @@ double heightAt(const SurfaceStore& surfaces, const Tiling& tiling, double latit
 std::optional<glm::dvec3> pick(const SurfaceStore& surfaces, const Tiling& tiling, const glm::dvec3& origin,
                                const glm::dvec3& direction) {
   const double length = glm::length(direction);
-  if (!(length > 0.0) || !std::isfinite(length)) {
+  if (!(length > 0.0) || !std::isfinite(length) || !std::isfinite(glm::length(origin))) {
     return std::nullopt;
   }
   const glm::dvec3 unit = direction / length;

@@ -33,6 +33,9 @@ class Surface {
   /// Of the last frame's view of that number.
   [[nodiscard]] virtual Settled settled(std::size_t view) const = 0;
 
+  /// Of the textures and buffers that hold something.
+  [[nodiscard]] virtual std::size_t residentBytes() const = 0;
+
   /// Metres of the drawn surface above the ellipsoid; 0 where nothing is in memory. Angles in radians.
   [[nodiscard]] virtual double heightAt(double latitude, double longitude) const = 0;
   /// The first point of the drawn surface on the ray, in model space.

@@ -17,9 +17,9 @@ namespace {
 /// Costs nothing itself, so that selection alone is measured.
 class FreeResidency : public TileResidency {
  public:
-  void want(const TileIndex&, double) override {}
-  void keep(const TileIndex&) override {}
-  [[nodiscard]] State state(const TileIndex&) const override { return State::Complete; }
+  void want(const TileIndex&, int, double) override {}
+  void keep(const TileIndex&, int) override {}
+  [[nodiscard]] State state(const TileIndex&, int) const override { return State::Complete; }
   [[nodiscard]] HeightRange heightRange(const TileIndex&) const override { return {-100.0, 4000.0}; }
   [[nodiscard]] unsigned heightVersion(const TileIndex&) const override { return 1; }
   [[nodiscard]] double geometricError(const TileIndex& index, int step) const override {
@@ -31,9 +31,11 @@ class FreeResidency : public TileResidency {
 /// Looks every answer up in a hash table, as a real one has to.
 class TableResidency final : public FreeResidency {
  public:
-  void want(const TileIndex& index, double priority) override { tiles_[index].priority = priority; }
-  void keep(const TileIndex& index) override { tiles_[index].kept = true; }
-  [[nodiscard]] State state(const TileIndex& index) const override { return find(index).state; }
+  void want(const TileIndex& index, int /*colourLevel*/, double priority) override {
+    tiles_[index].priority = priority;
+  }
+  void keep(const TileIndex& index, int /*colourLevel*/) override { tiles_[index].kept = true; }
+  [[nodiscard]] State state(const TileIndex& index, int /*colourLevel*/) const override { return find(index).state; }
   [[nodiscard]] unsigned heightVersion(const TileIndex& index) const override { return find(index).version; }
   [[nodiscard]] double geometricError(const TileIndex& index, int step) const override {
     return find(index).error * FreeResidency::geometricError(index, step);

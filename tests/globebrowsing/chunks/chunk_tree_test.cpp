@@ -379,7 +379,7 @@ TEST_F(ChunkTreeTest, PartitionsWhatIsSeenOverRandomWalks) {
       expectNoOverlaps(selected);
       expectNoHoles(view, selected, random);
       for (const SelectedChunk& chunk : tree_.selected()) {
-        ASSERT_NE(residency_.state(chunk.index), State::Nothing);
+        ASSERT_NE(residency_.state(chunk.index, chunk.colourLevel), State::Nothing);
       }
       if (HasFatalFailure()) {
         return;

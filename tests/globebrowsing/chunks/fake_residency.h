@@ -37,19 +37,19 @@ class FakeResidency final : public TileResidency {
     return (found.kept || found.wanted) && found.index == index ? &found : nullptr;
   }
 
-  void want(const TileIndex& index, double priority) override {
+  void want(const TileIndex& index, int /*colourLevel*/, double priority) override {
     Wish& wish = wishes[slot(index)];
     wish.index = index;
     wish.wanted = true;
     wish.priority = priority;
     allFinite = allFinite && std::isfinite(priority);
   }
-  void keep(const TileIndex& index) override {
+  void keep(const TileIndex& index, int /*colourLevel*/) override {
     Wish& wish = wishes[slot(index)];
     wish.index = index;
     wish.kept = true;
   }
-  [[nodiscard]] State state(const TileIndex& index) const override { return stateOf(index); }
+  [[nodiscard]] State state(const TileIndex& index, int /*colourLevel*/) const override { return stateOf(index); }
   [[nodiscard]] HeightRange heightRange(const TileIndex&) const override {
     ++rangesAsked;
     return range;

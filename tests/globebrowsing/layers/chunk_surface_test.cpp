@@ -71,13 +71,35 @@ TEST(ChunkSurface, ErrorOfABareSphericalTileIsItsSagitta) {
   EXPECT_NEAR(surface.error(4), 1e6 * (1.0 - std::cos(diagonal / 2.0)), 1e6 * 1e-3 * (1.0 - std::cos(diagonal / 2.0)));
 }
 
+glm::dvec3 normalOffset(const ChunkSurface& surface, int column, int row) {
+  const auto& texel = surface.normalOffsets()[static_cast<std::size_t>(row) * ChunkSurface::nodes + column];
+  return (glm::dvec3(texel[0], texel[1], texel[2]) - 128.0) / 127.0 * surface.normalScale();
+}
+
 TEST(ChunkSurface, NormalsOfAFlatSurfaceAreTheEllipsoids) {
-  const TileIndex index{1, 5, 7, 0};
-  const ChunkSurface surface(earth(), index, std::vector<float>(side * side, 500.0F));
-  for (const ChunkSurface::NormalOffset& offset : surface.normalOffsets()) {
-    for (const std::int16_t component : offset) {
-      EXPECT_LE(std::abs(component), 40);  // of 32767
-    }
+  const ChunkSurface surface(earth(), {1, 5, 7, 0}, std::vector<float>(side * side, 500.0F));
+  EXPECT_LT(surface.normalScale(), 1e-3);
+}
+
+TEST(ChunkSurface, NormalsOfASlopeAreItsGradients) {
+  // A plane that climbs one in ten to the east, near the equator.
+  const TileIndex index{1, 12, 700, 2047};
+  const ChunkSurface surface(earth(), index, heightsOf(index, [](const GeodeticPosition& place) {
+                               return static_cast<float>(0.1 * 6378137.0 * (place.longitude - 0.5));
+                             }));
+  const GeodeticPosition middle = earth().geodetic(index, {0.5, 0.5});
+  const glm::dvec3 up = earth().ellipsoid().normal(middle.latitude, middle.longitude);
+  const glm::dvec3 east(-std::sin(middle.longitude), std::cos(middle.longitude), 0.0);
+  const glm::dvec3 expected = glm::normalize(up - 0.1 * east);
+  EXPECT_LT(glm::distance(up + normalOffset(surface, 64, 64), expected), 2e-3);
+}
+
+TEST(ChunkSurface, ItsNormalsAreWithinItsCone) {
+  const TileIndex index{1, 3, 2, 3};
+  const ChunkSurface surface(earth(), index, heightsOf(index, relief));
+  for (const SurfaceVertex& vertex : surface.vertices()) {
+    const glm::dvec3 normal(vertex.normal[0], vertex.normal[1], vertex.normal[2]);
+    EXPECT_LE(std::acos(std::min(1.0, glm::dot(normal, surface.normalCone().axis))), surface.normalCone().angle + 1e-6);
   }
 }
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+
+#include "settled_globe.h"
+
+namespace meridian::bench {
+
+/// What a settled view draws.
+struct SurfaceFigures {
+  std::size_t chunks = 0;
+  std::size_t triangles = 0;  ///< skirts excluded
+  std::size_t skirtTriangles = 0;
+  std::size_t coveredPixels = 0;
+  double texelsPerPixel = 1.0;  ///< along a side, median over the picture
+  bool mostlyNight = false;     ///< whether more chunks are drawn with night layers than without
+  double errorPixels = 0.0;     ///< greatest distance on screen from the surface drawn with a grid four times denser
+};
+
+[[nodiscard]] SurfaceFigures measureSurface(SettledGlobe& globe, glm::ivec2 size);
+
+}  // namespace meridian::bench
