@@ -23,14 +23,12 @@ T valueOf(Result<T> result) {
   return *std::move(result);
 }
 
-Value layers(const char* identifier, const std::filesystem::path& file) {
+Value layer(const char* identifier, const std::filesystem::path& file) {
   Table layer;
   layer.fields["Identifier"] = identifier;
   layer.fields["FilePath"] = file.string();
   layer.fields["Enabled"] = true;
-  Table group;
-  group.list.emplace_back(std::move(layer));
-  return group;
+  return layer;
 }
 
 View viewOf(const Eye& eye) {
@@ -58,11 +56,19 @@ GlobeStage::GlobeStage(graphics::Context& context, const SmoothWorld& world, con
     throw std::runtime_error("no such composition budget");
   }
 
+  Table colours;
   world.writeColours(folder / "colours.tif");
+  colours.list.push_back(layer("Colours", folder / "colours.tif"));
+  if (world.spot.half > 0.0) {
+    world.writeSpot(folder / "spot.tif");
+    colours.list.push_back(layer("Spot", folder / "spot.tif"));
+  }
+  Table heights;
   world.writeHeights(folder / "heights.tif");
+  heights.list.push_back(layer("Heights", folder / "heights.tif"));
   Table groups;
-  groups.fields["ColorLayers"] = layers("Colours", folder / "colours.tif");
-  groups.fields["HeightLayers"] = layers("Heights", folder / "heights.tif");
+  groups.fields["ColorLayers"] = std::move(colours);
+  groups.fields["HeightLayers"] = std::move(heights);
   Table table;
   table.fields["Type"] = "RenderableGlobe";
   table.fields["Radii"] = Value(world.radii);

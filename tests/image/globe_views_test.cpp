@@ -35,13 +35,15 @@ struct ViewCase {
   double longitude;  ///< degrees
   double altitude;   ///< metres above the ellipsoid, or above the relief
   bool aboveRelief;
-  double heading;  ///< degrees from north by east
-  double pitch;    ///< degrees above the horizontal
+  double heading;            ///< degrees from north by east
+  double pitch;              ///< degrees above the horizontal
+  double fieldOfView = 0.9;  ///< radians, of the picture's height
 };
 constexpr bool ground = true;
 constexpr bool ellipsoid = false;
 
-constexpr SmoothWorld earth{"Earth", {6378137.0, 6378137.0, 6356752.314245}, 5000.0, 9.0, true};
+constexpr SmoothWorld earth{"Earth", {6378137.0, 6378137.0, 6356752.314245}, 5000.0, 9.0,
+                            true,    {35.005, 139.02, 0.0005, 16.0}};
 constexpr ViewCase earthViews[] = {
     {"whole disc", 20, 30, 2.5e7, ellipsoid, 0, -90},
     {"a few pixels", 10, 200, 9e8, ellipsoid, 0, -90},
@@ -72,17 +74,25 @@ constexpr ViewCase earthViews[] = {
     {"2 km over a mountain", 28, 86, 2e3, ground, 300, -10},
     {"2 km down", -12, -70, 2e3, ground, 0, -90},
     {"100 m horizon", 60, 25, 100, ground, 90, -2},
-    {"100 m down", 35, 139, 100, ground, 0, -90},
+    {"100 m over the spot", 35.005, 139.02, 100, ground, 0, -90},
+    {"20 m over the spot", 35.0049, 139.0201, 20, ground, 30, -30},
+    {"2 m over the spot", 35.00498, 139.01997, 2, ground, 45, -20},
+    {"20 cm over the spot", 35.00502, 139.02003, 0.2, ground, 190, -35},
     {"100 m oblique", -33, 151, 100, ground, 200, -30},
     {"3 m above the ground", 41, 2, 3, ground, 10, -5},
 };
 
 constexpr SmoothWorld mars{"Mars", {3396190.0, 3396190.0, 3376200.0}, 12000.0, 14.0, false};
 constexpr ViewCase marsViews[] = {
-    {"whole disc", -10, 250, 9e6, ellipsoid, 0, -90},          {"limb from 600 km", 25, 40, 6e5, ellipsoid, 30, -25},
-    {"horizon from 30 km", -45, -65, 3e4, ellipsoid, 250, -6}, {"2 km over the relief", 18, 226, 2e3, ground, 45, -8},
-    {"100 m over the relief", 4, 137, 100, ground, 160, -4},   {"north pole", 90, 0, 1e5, ellipsoid, 0, -70},
-    {"south pole", -89.8, 30, 3e4, ellipsoid, 180, -20},       {"antimeridian", 5, 180, 2e4, ellipsoid, 90, -14},
+    {"whole disc", -10, 250, 9e6, ellipsoid, 0, -90},
+    {"limb from 600 km", 25, 40, 6e5, ellipsoid, 30, -25},
+    {"horizon from 30 km", -45, -65, 3e4, ellipsoid, 250, -6},
+    {"2 km over the relief", 18, 226, 2e3, ground, 45, -8},
+    {"100 m over the relief", 4, 137, 100, ground, 160, -4},
+    {"north pole", 90, 0, 1e5, ellipsoid, 0, -70},
+    {"south pole", -89.8, 30, 3e4, ellipsoid, 180, -20},
+    {"antimeridian", 5, 180, 2e4, ellipsoid, 90, -14},
+    {"limb through a telescope", 0, 0, 4e6, ellipsoid, 40, -62.6, 0.04},
 };
 
 constexpr SmoothWorld triaxial{"Triaxial", {3.0e6, 2.5e6, 2.0e6}, 15000.0, 10.0, true};
@@ -126,6 +136,10 @@ constexpr ViewCase hollowViews[] = {
     {"limb", 35, 100, 6e4, ellipsoid, 150, -30},
     {"below the ellipsoid", -25, -105, 500, ground, 30, 0},
     {"below the ellipsoid looking up", -25, -105, 500, ground, 210, 8},
+    {"just above the ellipsoid, deep hollow", -25, -105, 300, ellipsoid, 120, -35},
+    {"above the ellipsoid, deep hollow", -25, -105, 3e3, ellipsoid, 300, -30},
+    {"deep hollow through a long lens", -25, -105, 300, ellipsoid, 120, -25, 0.06},
+    {"hollow to its far side through a long lens", -25, -105, 1e3, ellipsoid, 200, -15, 0.06},
     {"low over a ridge", 60, 20, 300, ground, 100, -6},
     {"antimeridian", -20, 180, 5e3, ground, 80, -15},
 };
@@ -139,13 +153,21 @@ Eye eyeOf(const SmoothWorld& world, const ViewCase& view) {
   const glm::dvec3 level = std::cos(heading) * glm::cross(up, east) + std::sin(heading) * east;
   const double height = view.altitude + (view.aboveRelief ? world.height(up) : 0.0);
   return {positionOf(up, height, world.radii), std::cos(pitch) * level + std::sin(pitch) * up,
-          std::cos(pitch) * up - std::sin(pitch) * level, std::max(0.05, 1e-3 * view.altitude)};
+          std::cos(pitch) * up - std::sin(pitch) * level, std::max(0.05, 1e-3 * view.altitude), view.fieldOfView};
 }
 
-std::string fileName(const SmoothWorld& world, const ViewCase& view, const std::string& suffix = "") {
-  std::string name = fmt::format("{} {}{}.png", world.name, view.name, suffix);
+std::string fileName(const SmoothWorld& world, const std::string& view) {
+  std::string name = fmt::format("{} {}.png", world.name, view);
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
+}
+
+/// Within anything that may be drawn, however coarse: a root's 32 segments over half the globe lie at most
+/// 2 (1 - cos(pi / 64)) of the radius below the ellipsoid.
+Relief innermost(const SmoothWorld& world) {
+  const double least = std::min({world.radii.x, world.radii.y, world.radii.z});
+  const double inner = 1.0 - world.relief / least - 2.0 * (1.0 - std::cos(std::numbers::pi / 64.0));
+  return {inner * world.radii, 0.0, 0.0, [](const glm::dvec3&) { return 0.0; }};
 }
 
 class GlobeViews : public ::testing::Test {
@@ -191,7 +213,7 @@ class GlobeViews : public ::testing::Test {
     const bool keep = std::getenv("MERIDIAN_KEEP_PICTURES") != nullptr;
     const std::string picture = verdict.isGood() && !keep
                                     ? std::string()
-                                    : writeEvidence(pictures() / fileName(world, view), drawn, expected, verdict);
+                                    : writeEvidence(pictures() / fileName(world, view.name), drawn, expected, verdict);
     EXPECT_TRUE(verdict.isGood()) << world.name << ", " << view.name << ": " << verdict.text() << "; see " << picture;
   }
 
@@ -236,20 +258,8 @@ class GlobeJumps : public GlobeViews {
     ASSERT_EQ(stage_->settle(eyeOf(world, from), settleSeconds), "") << world.name << ", " << from.name;
     const Eye eye = eyeOf(world, to);
     ASSERT_GT(footOf(eye.position, world.radii).height, world.relief) << to.name;
-    // A root's 32 segments over half the globe lie at most 2 (1 - cos(pi / 64)) of the radius below the ellipsoid.
-    const double least = std::min({world.radii.x, world.radii.y, world.radii.z});
-    const double inner = 1.0 - world.relief / least - 2.0 * (1.0 - std::cos(std::numbers::pi / 64.0));
-    const Expected outline =
-        expectedOutline({inner * world.radii, 0.0, 0.0, [](const glm::dvec3&) { return 0.0; }}, eye);
     for (int frame = 0; frame < frames; ++frame) {
-      stage_->draw(eye);
-      unsettled_ += int{!stage_->globe().settled(0).complete};
-      const Pixels drawn = stage_->pixels();
-      const Verdict verdict = checkCoverage(drawn, outline);
-      EXPECT_TRUE(verdict.isGood()) << world.name << ", from '" << from.name << "' to '" << to.name << "', frame "
-                                    << frame << ": " << verdict.text() << "; see "
-                                    << writeEvidence(pictures() / fileName(world, to, fmt::format(" frame {}", frame)),
-                                                     drawn, outline, verdict);
+      checkUnsettled(world, eye, fmt::format("{} after {}, frame {}", to.name, from.name, frame));
     }
   }
 
@@ -274,6 +284,16 @@ class GlobeJumps : public GlobeViews {
     EXPECT_GE(unsettled_, jumps) << "the jumps showed nothing that was still loading";
   }
 
+  void checkUnsettled(const SmoothWorld& world, const Eye& eye, const std::string& name) {
+    const Expected outline = expectedOutline(innermost(world), eye);
+    stage_->draw(eye);
+    unsettled_ += int{!stage_->globe().settled(0).complete};
+    const Pixels drawn = stage_->pixels();
+    const Verdict verdict = checkCoverage(drawn, outline);
+    EXPECT_TRUE(verdict.isGood()) << world.name << ", " << name << ": " << verdict.text() << "; see "
+                                  << writeEvidence(pictures() / fileName(world, name), drawn, outline, verdict);
+  }
+
   int unsettled_ = 0;
 };
 
@@ -285,6 +305,26 @@ TEST_F(GlobeJumps, ATriaxialBodyHasNoHoleWhileItLoads) {
 }
 TEST_F(GlobeJumps, ATinyBodyHasNoHoleWhileItLoads) {
   jumpAll(tiny, tinyViews, 4);
+}
+
+TEST_F(GlobeJumps, ADescentHasNoHoleWhileItLoads) {
+  open(earth);
+  ASSERT_NE(stage_, nullptr);
+  constexpr int frames = 80;
+  ViewCase view{"descent", 40, 170, 2e7, ellipsoid, 0, -90};
+  ASSERT_EQ(stage_->settle(eyeOf(earth, view), settleSeconds), "");
+  for (int frame = 0; frame < frames; ++frame) {
+    // Down to a kilometre above the highest relief, over the antimeridian, and round by half a turn from frame to frame
+    // near the end.
+    const double share = frame / (frames - 1.0);
+    view.altitude = 6000.0 * std::pow(2e7 / 6000.0, 1.0 - share);
+    view.longitude = 170.0 + 12.0 * share;
+    view.latitude = 40.0 - 10.0 * share;
+    view.pitch = -90.0 + 75.0 * share;
+    view.heading = share < 0.8 ? 200.0 * share : 170.0 * frame;
+    checkUnsettled(earth, eyeOf(earth, view), fmt::format("descent, frame {}", frame));
+  }
+  EXPECT_GT(unsettled_, 0) << "nothing was still loading";
 }
 
 /// The rays stand on this, so it is held against a library.

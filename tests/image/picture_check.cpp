@@ -101,7 +101,7 @@ Verdict checkCoverage(const Pixels& drawn, const std::vector<Region>& regions) {
 }  // namespace
 
 Expected expectedPicture(const SmoothWorld& world, const Eye& eye) {
-  return cast(world.surface(), eye, &SmoothWorld::colour);
+  return cast(world.surface(), eye, [&](const glm::dvec3& normal) { return world.colour(normal); });
 }
 
 Expected expectedOutline(const Relief& relief, const Eye& eye) {

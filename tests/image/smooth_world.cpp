@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -13,47 +14,74 @@ namespace meridian::globebrowsing::test {
 
 namespace {
 
-struct Layout {
+constexpr double degree = std::numbers::pi / 180.0;
+
+/// Where a raster's values are, in degrees.
+struct Grid {
+  int columns = 0;
+  int rows = 0;
+  double pixel = 0.0;
+  double west = 0.0;   ///< of the first value
+  double north = 0.0;  ///< likewise
+};
+
+struct Kind {
   GDALDataType type = GDT_Byte;
   int bands = 1;
   bool nodes = false;
 };
 
-void write(const std::filesystem::path& file, int columns, const Layout& layout,
+void write(const std::filesystem::path& file, const Grid& grid, const Kind& kind,
            const std::function<double(const glm::dvec3&, int)>& value) {
   GDALAllRegister();
-  const int width = layout.nodes ? columns + 1 : columns;
-  const int height = layout.nodes ? columns / 2 + 1 : columns / 2;
-  const double pixel = 360.0 / columns;
-  const double first = layout.nodes ? 0.0 : 0.5;
   GDALDatasetUniquePtr dataset(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-      file.c_str(), width, height, layout.bands, layout.type, nullptr));
+      file.c_str(), grid.columns, grid.rows, kind.bands, kind.type, nullptr));
   if (!dataset) {
     throw std::runtime_error(file.string() + ": GDAL cannot create it");
   }
   // GDAL's transform is of the pixels' corners, for node-registered rasters too.
-  std::array<double, 6> transform{-180.0 + (first - 0.5) * pixel, pixel, 0.0,
-                                  90.0 - (first - 0.5) * pixel,   0.0,   -pixel};
+  std::array<double, 6> transform{grid.west - 0.5 * grid.pixel,  grid.pixel, 0.0,
+                                  grid.north + 0.5 * grid.pixel, 0.0,        -grid.pixel};
   dataset->SetGeoTransform(transform.data());
-  if (layout.nodes) {
+  if (kind.nodes) {
     dataset->SetMetadataItem("AREA_OR_POINT", "Point");
   }
   OGRSpatialReference crs;
   crs.SetFromUserInput("EPSG:4326");
   dataset->SetSpatialRef(&crs);
-  std::vector<double> line(static_cast<std::size_t>(width));
-  for (int band = 0; band < layout.bands; ++band) {
-    for (int row = 0; row < height; ++row) {
-      for (int column = 0; column < width; ++column) {
+  std::vector<double> line(static_cast<std::size_t>(grid.columns));
+  for (int band = 0; band < kind.bands; ++band) {
+    for (int row = 0; row < grid.rows; ++row) {
+      for (int column = 0; column < grid.columns; ++column) {
         line[static_cast<std::size_t>(column)] =
-            value(normalAt(90.0 - (row + first) * pixel, -180.0 + (column + first) * pixel), band);
+            value(normalAt(grid.north - row * grid.pixel, grid.west + column * grid.pixel), band);
       }
-      if (dataset->GetRasterBand(band + 1)->RasterIO(GF_Write, 0, row, width, 1, line.data(), width, 1, GDT_Float64, 0,
-                                                     0, nullptr) != CE_None) {
+      if (dataset->GetRasterBand(band + 1)->RasterIO(GF_Write, 0, row, grid.columns, 1, line.data(), grid.columns, 1,
+                                                     GDT_Float64, 0, 0, nullptr) != CE_None) {
         throw std::runtime_error(file.string() + ": GDAL cannot write it");
       }
     }
   }
+}
+
+Grid globalGrid(int columns, bool nodes) {
+  const double pixel = 360.0 / columns;
+  return nodes ? Grid{columns + 1, columns / 2 + 1, pixel, -180.0, 90.0}
+               : Grid{columns, columns / 2, pixel, -180.0 + 0.5 * pixel, 90.0 - 0.5 * pixel};
+}
+
+/// Added to every channel: waves that end smoothly at the spot's edges.
+double inSpot(const Spot& spot, const glm::dvec3& normal) {
+  const double latitude = std::asin(std::clamp(normal.z, -1.0, 1.0)) / degree;
+  const double longitude = std::atan2(normal.y, normal.x) / degree;
+  const double u = (longitude - spot.longitude) / spot.half;
+  const double v = (latitude - spot.latitude) / spot.half;
+  if (!(std::abs(u) < 1.0 && std::abs(v) < 1.0)) {
+    return 0.0;
+  }
+  const double window = (1.0 - u * u) * (1.0 - v * v);
+  const double turns = 2.0 * std::numbers::pi * spot.waves;
+  return 20.0 * window * window * std::sin(turns * u) * std::cos(turns * v);
 }
 
 }  // namespace
@@ -72,20 +100,28 @@ Relief SmoothWorld::surface() const {
           [this](const glm::dvec3& normal) { return height(normal); }};
 }
 
-glm::dvec3 SmoothWorld::colour(const glm::dvec3& normal) {
+glm::dvec3 SmoothWorld::colour(const glm::dvec3& normal) const {
   const double wide = std::sin(2.5 * normal.x + 4.0 * normal.z + 0.4) * std::cos(3.0 * normal.y);
   const double middling = std::sin(17.0 * normal.x) * std::cos(15.0 * normal.y + 0.8) + std::sin(13.0 * normal.z);
   const double narrow = std::sin(40.0 * normal.x) + std::sin(40.0 * normal.y + 1.0) + std::sin(40.0 * normal.z + 2.0);
-  return {140.0 + 90.0 * wide, 140.0 + 45.0 * middling, 140.0 + 30.0 * narrow};
+  const double fine = spot.half > 0.0 ? inSpot(spot, normal) : 0.0;
+  return {140.0 + 90.0 * wide + fine, 140.0 + 45.0 * middling + fine, 140.0 + 30.0 * narrow + fine};
 }
 
 void SmoothWorld::writeColours(const std::filesystem::path& file) const {
-  write(file, columns, {GDT_Byte, 3, false},
-        [](const glm::dvec3& normal, int band) { return std::round(colour(normal)[band]); });
+  write(file, globalGrid(columns, false), {GDT_Byte, 3, false},
+        [this](const glm::dvec3& normal, int band) { return std::round(colour(normal)[band]); });
+}
+
+void SmoothWorld::writeSpot(const std::filesystem::path& file) const {
+  const double pixel = 2.0 * spot.half / columns;
+  const double inset = spot.half - 0.5 * pixel;
+  write(file, {columns, columns, pixel, spot.longitude - inset, spot.latitude + inset}, {GDT_Byte, 3, false},
+        [this](const glm::dvec3& normal, int band) { return std::round(colour(normal)[band]); });
 }
 
 void SmoothWorld::writeHeights(const std::filesystem::path& file) const {
-  write(file, columns, {GDT_Float32, 1, nodeRegistered},
+  write(file, globalGrid(columns, nodeRegistered), {GDT_Float32, 1, nodeRegistered},
         [this](const glm::dvec3& normal, int) { return height(normal); });
 }
 
