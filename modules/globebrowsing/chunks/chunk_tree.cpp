@@ -85,10 +85,10 @@ struct PreparedView {
   Horizon horizon{glm::dvec3(1.0), 0.0, glm::dvec3(0.0)};
 };
 
-/// Pixels that a metre along the vertical covers, at most, within a tile.
+/// Pixels that a metre covers, at most, within a tile, on the flat picture, which stretches what is off its middle.
 struct ErrorScale {
-  double anywhere = 0.0;  ///< wherever the view looks: on the middle of its picture
-  double drawn = 0.0;     ///< where it is on the flat picture, which stretches what is off its middle
+  double vertical = 0.0;  ///< along the vertical, seen at the tile's slant
+  double along = 0.0;     ///< along the surface
 };
 
 /// What all views together ask of a tile.
@@ -97,10 +97,9 @@ struct Demand {
   bool beside = false;      ///< some view would see it, looking elsewhere
   double distance = 0.0;
   double urgency = 0.0;
-  double pixelsPerMetre = 0.0;       ///< at the tile's nearest point
-  double errorPixelsPerMetre = 0.0;  ///< the same of a displacement along the vertical, seen at the tile's slant
-  double drawnPixelsPerMetre = 0.0;  ///< the same on the flat picture, which stretches what is off its middle
-  double centred = 0.0;              ///< 1 in the middle of a view, 0 behind it
+  double pixelsPerMetre = 0.0;  ///< at the tile's nearest point
+  ErrorScale error;
+  double centred = 0.0;  ///< 1 in the middle of a view, 0 behind it
 };
 
 /// Why a tile splits.
@@ -127,8 +126,8 @@ double cornerCosine(const glm::dmat4& clipFromModel) {
 ErrorScale errorScale(const ChunkBounds& bounds, const PreparedView& view, double distance) {
   ErrorScale scale;
   if (distance < bounds.edgeLength) {
-    scale.anywhere = view.pixelsPerRadian / distance;
-    scale.drawn = scale.anywhere / (view.leastCosine * view.leastCosine);
+    scale.along = view.pixelsPerRadian / (distance * view.leastCosine * view.leastCosine);
+    scale.vertical = scale.along;
     return scale;
   }
   for (std::size_t i = 0; i < bounds.points.size(); ++i) {
@@ -136,9 +135,9 @@ ErrorScale errorScale(const ChunkBounds& bounds, const PreparedView& view, doubl
     const double inverse = 1.0 / glm::length(towards);
     const double cosine = std::max(0.0, glm::dot(towards, bounds.normals[i]) * inverse);
     const double offAxis = std::max(view.leastCosine, -glm::dot(towards, view.forward) * inverse);
-    const double here = view.pixelsPerRadian * inverse * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
-    scale.anywhere = std::max(scale.anywhere, here);
-    scale.drawn = std::max(scale.drawn, here / (offAxis * offAxis));
+    const double here = view.pixelsPerRadian * inverse / (offAxis * offAxis);
+    scale.along = std::max(scale.along, here);
+    scale.vertical = std::max(scale.vertical, here * std::sqrt(std::max(0.0, 1.0 - cosine * cosine)));
   }
   return scale;
 }
@@ -167,6 +166,8 @@ class ChunkTree::Implementation {
 
   void updateBounds(ChunkNode& node);
   [[nodiscard]] Demand demandOn(const ChunkNode& node) const;
+  /// Of the tile drawn at that step.
+  [[nodiscard]] double errorPixels(const ChunkNode& node, int step, const Demand& demand) const;
   [[nodiscard]] Refinement refinement(const ChunkNode& node, const Demand& demand) const;
   void noteCulled(const ChunkNode& node, const Demand& demand);
   void split(NodeNumber number);
@@ -303,8 +304,8 @@ Demand ChunkTree::Implementation::demandOn(const ChunkNode& node) const {
     const double pixelsPerMetre = view.pixelsPerRadian / measure.distance;
     demand.pixelsPerMetre = std::max(demand.pixelsPerMetre, pixelsPerMetre);
     const ErrorScale scale = errorScale(node.bounds, view, measure.distance);
-    demand.errorPixelsPerMetre = std::max(demand.errorPixelsPerMetre, scale.anywhere);
-    demand.drawnPixelsPerMetre = std::max(demand.drawnPixelsPerMetre, scale.drawn);
+    demand.error.vertical = std::max(demand.error.vertical, scale.vertical);
+    demand.error.along = std::max(demand.error.along, scale.along);
     demand.distance = std::min(demand.distance, measure.distance);
     demand.centred = std::max(demand.centred, 0.5 - 0.5 * glm::dot(towards, view.forward) / centreDistance);
   }
@@ -318,9 +319,13 @@ Refinement ChunkTree::Implementation::refinement(const ChunkNode& node, const De
   }
   wanted.colours = demand.urgency > 1.0 && (!evaluator_->limitedByData() || residency_->hasFinerColours(node.index));
   wanted.surface = node.bounds.edgeLength * floatPrecision * demand.pixelsPerMetre > maximumPrecisionPixels ||
-                   residency_->geometricError(node.index, splitStep(node.index.level)) * demand.drawnPixelsPerMetre >
-                       settings_.maximumErrorPixels;
+                   errorPixels(node, splitStep(node.index.level), demand) > settings_.maximumErrorPixels;
   return wanted;
+}
+
+double ChunkTree::Implementation::errorPixels(const ChunkNode& node, int step, const Demand& demand) const {
+  return std::max(residency_->geometricError(node.index, step) * demand.error.vertical,
+                  residency_->surfaceDrift(node.index, step) * demand.error.along);
 }
 
 double ChunkTree::Implementation::priority(const Demand& demand, double base) const {
@@ -473,7 +478,7 @@ void ChunkTree::Implementation::draw(NodeNumber number, const Demand& demand) {
   chunk.distance = demand.distance;
   for (chunk.step = 0;; ++chunk.step) {
     chunk.error = residency_->geometricError(node.index, chunk.step);
-    if (chunk.step == finestStep || chunk.error * demand.drawnPixelsPerMetre <= settings_.maximumErrorPixels) {
+    if (chunk.step == finestStep || errorPixels(node, chunk.step, demand) <= settings_.maximumErrorPixels) {
       break;
     }
   }

@@ -103,8 +103,19 @@ double GlobeTiles::geometricError(const TileIndex& index, int step) const {
         std::numbers::pi / std::ldexp(static_cast<double>(2 * chunk_grid::segmentsAt(step)), index.level);
     return tiling_->ellipsoid().maximumRadius() * (1.0 - std::cos(halfSegment));
   }
-  // Curvature's part falls to a quarter per level, relief's to a half or so.
-  return std::ldexp(nearest.surface->error(step), nearest.level - index.level);
+  // From level to level curvature's part falls to a quarter, and so does relief's below the resolution of its data;
+  // above it, relief is as rough at half the size and falls to a half.
+  double error = nearest.surface->error(step);
+  for (std::optional<TileIndex> at = tiling_->parent(index);
+       at && at->level >= nearest.level && nearest.level < index.level; at = tiling_->parent(*at)) {
+    error *= surfaces_.hasFinerHeights(*at) ? 0.5 : 0.25;
+  }
+  return error;
+}
+
+double GlobeTiles::surfaceDrift(const TileIndex& index, int step) const {
+  const SurfaceStore::Nearest nearest = surfaces_.nearest(index);
+  return nearest.surface == nullptr ? 0.0 : std::ldexp(nearest.surface->drift(step), 2 * (nearest.level - index.level));
 }
 
 std::string GlobeTiles::waitingFor() const {

@@ -34,6 +34,7 @@ class GlobeTiles final : public TileResidency {
   [[nodiscard]] HeightRange heightRange(const TileIndex& index) const override;
   [[nodiscard]] unsigned heightVersion(const TileIndex& index) const override;
   [[nodiscard]] double geometricError(const TileIndex& index, int step) const override;
+  [[nodiscard]] double surfaceDrift(const TileIndex& index, int step) const override;
   [[nodiscard]] bool hasFinerColours(const TileIndex& index) const override { return composites_.hasFiner(index); }
 
   [[nodiscard]] const SurfaceStore& surfaces() const { return surfaces_; }

@@ -166,6 +166,13 @@ const ChunkSurface* SurfaceStore::find(const TileIndex& index) const {
   return found == resident_.end() ? nullptr : found->second.surface.get();
 }
 
+bool SurfaceStore::hasFinerHeights(const TileIndex& index) const {
+  const std::vector<Layer*>& enabled = layers_.group(LayerGroupId::HeightLayers).enabledLayers();
+  return std::any_of(enabled.begin(), enabled.end(), [&](const Layer* layer) {
+    return layer->isReady() && layer->provider()->hasFinerHeights(*tiling_, index);
+  });
+}
+
 SurfaceStore::Nearest SurfaceStore::nearest(const TileIndex& index) const {
   std::optional<TileIndex> at = index;
   while (at) {

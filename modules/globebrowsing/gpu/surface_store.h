@@ -45,6 +45,8 @@ class SurfaceStore {
     unsigned stamp = 0;  ///< of its arrival: equal stamps mean the same surface; 0 for none
   };
   [[nodiscard]] Nearest nearest(const TileIndex& index) const;
+  /// Whether some enabled height layer has finer data within the tile than its surface shows. No input or output.
+  [[nodiscard]] bool hasFinerHeights(const TileIndex& index) const;
   /// No resident surface is deeper.
   [[nodiscard]] int deepestLevel() const { return deepest_; }
   /// The least height of any resident surface, at most 0.

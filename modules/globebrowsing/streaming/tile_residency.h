@@ -40,6 +40,8 @@ class TileResidency {
   /// Metres between the tile's surface drawn with 2, 4, 8, 16, 32 segments a side (`step` 0..4) and drawn at its
   /// height tile's nodes. Estimated from the ellipsoid and the parent while there is no height tile.
   [[nodiscard]] virtual double geometricError(const TileIndex& index, int step) const = 0;
+  /// Metres that the same drawing shifts what lies on the surface along it: parallels drawn as chords.
+  [[nodiscard]] virtual double surfaceDrift(const TileIndex& index, int step) const = 0;
   /// Whether some enabled colour layer has finer data within this tile than the tile's own composite shows.
   [[nodiscard]] virtual bool hasFinerColours(const TileIndex& index) const = 0;
 };

@@ -22,6 +22,7 @@ class FreeResidency : public TileResidency {
   [[nodiscard]] State state(const TileIndex&, int) const override { return State::Complete; }
   [[nodiscard]] HeightRange heightRange(const TileIndex&) const override { return {-100.0, 4000.0}; }
   [[nodiscard]] unsigned heightVersion(const TileIndex&) const override { return 1; }
+  [[nodiscard]] double surfaceDrift(const TileIndex& /*index*/, int /*step*/) const override { return 0.0; }
   [[nodiscard]] double geometricError(const TileIndex& index, int step) const override {
     return std::ldexp(1e6, -2 * index.level - 2 * step);
   }

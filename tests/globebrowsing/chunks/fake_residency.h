@@ -55,6 +55,7 @@ class FakeResidency final : public TileResidency {
     return range;
   }
   [[nodiscard]] unsigned heightVersion(const TileIndex&) const override { return version; }
+  [[nodiscard]] double surfaceDrift(const TileIndex& /*index*/, int /*step*/) const override { return 0.0; }
   [[nodiscard]] double geometricError(const TileIndex& index, int step) const override {
     return errorAtRoot * std::ldexp(1.0, -2 * index.level - 2 * step);
   }
