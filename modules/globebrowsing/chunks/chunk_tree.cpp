@@ -19,10 +19,14 @@ namespace {
 
 constexpr std::size_t mostViews = 32;
 constexpr int finestStep = 4;
-/// A tile that this step (8 segments a side) does not bring within the error splits. Two are left for what only
-/// drawing knows: the sides of a flat picture stretch what they show. And small tiles fit uneven relief better: where
-/// one peak asks for density, only its own tile gets it.
-constexpr int splitStep = 2;
+/// A tile that this step does not bring within the error splits: large tiles at 8 segments a side, because beyond the
+/// horizon they are culled whole or not at all; others at 16, because a chunk costs something too. The steps left are
+/// for what stands in for tiles that load. (Small tiles fit uneven relief better than dense ones: where one peak asks
+/// for density, only its own tile gets it.)
+constexpr int splitStep(int level) {
+  constexpr int firstOrdinaryLevel = 4;
+  return level < firstOrdinaryLevel ? 2 : 3;
+}
 /// A float holds 24 bits: a corner patch's edge times this is the error of a vertex along it.
 constexpr double floatPrecision = 0x1p-23;
 constexpr double maximumPrecisionPixels = 0.05;
@@ -127,14 +131,12 @@ ErrorScale errorScale(const ChunkBounds& bounds, const PreparedView& view, doubl
     scale.drawn = scale.anywhere / (view.leastCosine * view.leastCosine);
     return scale;
   }
-  constexpr double betweenPoints = 1.1;
   for (std::size_t i = 0; i < bounds.points.size(); ++i) {
     const glm::dvec3 towards = view.position - bounds.points[i];
     const double inverse = 1.0 / glm::length(towards);
     const double cosine = std::max(0.0, glm::dot(towards, bounds.normals[i]) * inverse);
     const double offAxis = std::max(view.leastCosine, -glm::dot(towards, view.forward) * inverse);
-    const double here =
-        betweenPoints * view.pixelsPerRadian * inverse * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+    const double here = view.pixelsPerRadian * inverse * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
     scale.anywhere = std::max(scale.anywhere, here);
     scale.drawn = std::max(scale.drawn, here / (offAxis * offAxis));
   }
@@ -315,9 +317,9 @@ Refinement ChunkTree::Implementation::refinement(const ChunkNode& node, const De
     return wanted;
   }
   wanted.colours = demand.urgency > 1.0 && (!evaluator_->limitedByData() || residency_->hasFinerColours(node.index));
-  wanted.surface =
-      node.bounds.edgeLength * floatPrecision * demand.pixelsPerMetre > maximumPrecisionPixels ||
-      residency_->geometricError(node.index, splitStep) * demand.drawnPixelsPerMetre > settings_.maximumErrorPixels;
+  wanted.surface = node.bounds.edgeLength * floatPrecision * demand.pixelsPerMetre > maximumPrecisionPixels ||
+                   residency_->geometricError(node.index, splitStep(node.index.level)) * demand.drawnPixelsPerMetre >
+                       settings_.maximumErrorPixels;
   return wanted;
 }
 

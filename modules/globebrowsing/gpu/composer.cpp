@@ -134,6 +134,13 @@ class TargetRestorer {
 
 }  // namespace
 
+Composer::Samplers Composer::makeSamplers() {
+  Samplers made{graphics::Sampler::create(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR),
+                graphics::Sampler::create(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR)};
+  glSamplerParameterf(made.polar.id(), GL_TEXTURE_MAX_LOD, 1.0F);
+  return made;
+}
+
 std::size_t Composer::bytesPerRawTile() {
   return std::size_t{4} * side * side;
 }
@@ -161,7 +168,7 @@ Composer::Composer(graphics::Graphics& graphics, const Capacity& capacity)
       composites_(
           graphics::Texture::array2D(colourFormat, side, side, static_cast<int>(capacity.composites), levelCount)),
       rawTiles_(graphics::Texture::array2D(colourFormat, side, side, static_cast<int>(capacity.rawTiles))),
-      sampler_(graphics::Sampler::create(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR)),
+      samplers_(makeSamplers()),
       rawSampler_(graphics::Sampler::create(GL_LINEAR, GL_LINEAR)),
       rawSlots_(capacity.rawTiles),
       framebuffer_(graphics::Framebuffer::create()),

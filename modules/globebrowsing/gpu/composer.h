@@ -45,9 +45,18 @@ class Composer {
   /// Errors: shader templates missing or wrong.
   [[nodiscard]] static Result<std::unique_ptr<Composer>> create(graphics::Graphics& graphics, const Capacity& capacity);
 
-  /// The array texture of composites; bind it with sampler().
+  /// How composites are sampled when chunks are drawn.
+  struct Samplers {
+    graphics::Sampler plain;
+    /// For tiles that taper to a pole. There a pixel spans many texels along u that are all but one point; going by
+    /// those would blur along v as well, so at most the first half-size level is used.
+    graphics::Sampler polar;
+  };
+  [[nodiscard]] static Samplers makeSamplers();
+
+  /// The array texture of composites; bind it with one of samplers().
   [[nodiscard]] GLuint composites() const { return composites_.id(); }
-  [[nodiscard]] GLuint sampler() const { return sampler_.id(); }
+  [[nodiscard]] const Samplers& samplers() const { return samplers_; }
 
   /// Asks for the program of that kind's structure. Cheap when nothing changed.
   void setStructure(CompositeKind kind, const StructureKey& key);
@@ -97,7 +106,7 @@ class Composer {
   graphics::Texture composites_;
   std::array<graphics::Texture, levelCount> levelViews_;  ///< of composites_, each of one level alone
   graphics::Texture rawTiles_;
-  graphics::Sampler sampler_;
+  Samplers samplers_;
   graphics::Sampler rawSampler_;
   SlotPool<TileKey> rawSlots_;
   graphics::Framebuffer framebuffer_;

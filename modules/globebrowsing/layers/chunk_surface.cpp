@@ -64,11 +64,29 @@ ChunkSurface::ChunkSurface(const Tiling& tiling, const TileIndex& index, std::ve
   }
   corners_ = {tiling.position(index, {0.0, 0.0}), tiling.position(index, {1.0, 0.0}),
               tiling.position(index, {0.0, 1.0}), tiling.position(index, {1.0, 1.0})};
+  taper_ = taperOf(all);
   makeVertices(all);
   makeNormals(all);
   for (int step = 0; step < chunk_grid::steps; ++step) {
     errors_[static_cast<std::size_t>(step)] = errorAt(all, step);
   }
+}
+
+double ChunkSurface::taperOf(const Nodes& all) {
+  const auto length = [&](int row) {
+    double sum = 0.0;
+    for (int column = 1; column < nodes; ++column) {
+      sum += glm::distance(all.positions[Nodes::at(column, row)], all.positions[Nodes::at(column - 1, row)]);
+    }
+    return sum;
+  };
+  const double north = length(0);
+  const double south = length(nodes - 1);
+  const double wider = std::max(north, south);
+  if (wider < 1e-6 * length(nodes / 2)) {
+    return 0.0;
+  }
+  return north < south ? 1.0 - north / wider : south / wider - 1.0;
 }
 
 float ChunkSurface::height(int column, int row) const {

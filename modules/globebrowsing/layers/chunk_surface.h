@@ -50,6 +50,9 @@ class ChunkSurface final : public TileData {
   [[nodiscard]] std::span<const NormalOffset> normalOffsets() const { return normalOffsets_; }
   /// The largest component of any normal offset; 0 for a flat tile.
   [[nodiscard]] double normalScale() const { return normalScale_; }
+  /// 1 - (narrower over wider of the north and the south edge), 0..1; below 0 when the south edge is the narrower one.
+  /// 0 for a root between two poles.
+  [[nodiscard]] double taper() const { return taper_; }
   /// All of the tile's ellipsoid normals are within `angle` radians of `axis`.
   struct NormalCone {
     glm::dvec3 axis{0.0, 0.0, 1.0};
@@ -66,6 +69,7 @@ class ChunkSurface final : public TileData {
   [[nodiscard]] float height(int column, int row) const;
   void makeVertices(const Nodes& all);
   void makeNormals(const Nodes& all);
+  [[nodiscard]] static double taperOf(const Nodes& all);
   [[nodiscard]] static glm::dvec3 surfaceNormal(const Nodes& all, int column, int row);
   [[nodiscard]] double errorAt(const Nodes& all, int step) const;
 
@@ -76,6 +80,7 @@ class ChunkSurface final : public TileData {
   std::vector<SurfaceVertex> vertices_;
   std::vector<NormalOffset> normalOffsets_;
   double normalScale_ = 0.0;
+  double taper_ = 0.0;
   NormalCone cone_;
 };
 

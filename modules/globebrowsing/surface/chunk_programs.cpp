@@ -20,12 +20,12 @@ std::string defines(const ChunkProgramKey& key) {
       int{key.shading}, int{key.accurateNormals}, int{key.night}, int{key.overlay}, int{key.edges});
 }
 
-/// Draws one triangle as chunks are drawn, with textures, vertices and a target of its own.
+/// Draws a triangle as chunks are drawn, with either sampler, and textures, vertices and a target of its own.
 void warmChunks(GLuint program, bool blended) {
   constexpr int size = 24;
   const graphics::Texture composites = graphics::Texture::array2D(GL_RGBA8, size, size, 2, Composer::levelCount);
   const graphics::Texture normals = graphics::Texture::array2D(SurfacePool::normalFormat, size, size, 2);
-  const graphics::Sampler sampler = graphics::Sampler::create(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
+  const Composer::Samplers samplers = Composer::makeSamplers();
   const graphics::Texture colour = graphics::Texture::image2D(GL_RGBA8, size, size);
   const graphics::Texture depth = graphics::Texture::image2D(GL_DEPTH_COMPONENT32F, size, size);
   const graphics::Framebuffer framebuffer = graphics::Framebuffer::create();
@@ -54,13 +54,15 @@ void warmChunks(GLuint program, bool blended) {
     chunk_bindings::enableBlending();
   }
   glBindTextureUnit(chunk_bindings::compositeUnit, composites.id());
-  glBindSampler(chunk_bindings::compositeUnit, sampler.id());
   glBindTextureUnit(chunk_bindings::normalUnit, normals.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, chunk_bindings::viewBlock, viewBlock.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, chunk_bindings::chunkBlock, chunkBlock.id());
   glUseProgram(program);
   glBindVertexArray(vertexArray.id());
-  glDrawElementsBaseVertex(GL_TRIANGLES, 3, GL_UNSIGNED_SHORT, nullptr, 0);
+  for (const graphics::Sampler* sampler : {&samplers.plain, &samplers.polar}) {
+    glBindSampler(chunk_bindings::compositeUnit, sampler->id());
+    glDrawElementsBaseVertex(GL_TRIANGLES, 3, GL_UNSIGNED_SHORT, nullptr, 0);
+  }
 }
 
 }  // namespace

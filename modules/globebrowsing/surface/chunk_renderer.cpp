@@ -20,6 +20,9 @@ using namespace chunk_bindings;
 /// The night layers begin to show where the light is that low over the horizon (chunk.frag).
 const double leastDaylight = std::asin(0.2);
 
+/// Tiles that touch a pole taper to nothing; in the others the wider edge is at most about twice the narrower.
+constexpr double polarTaper = 0.9;
+
 /// A camera that is not a number never reaches the GPU.
 bool isFinite(const ViewBlock& view) {
   for (int column = 0; column < 4; ++column) {
@@ -70,6 +73,7 @@ std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
     enableBlending();
   }
   inUse_ = programs_.full();
+  polar_ = false;
   std::size_t drawn = 0;
   for (const SelectedChunk& chunk : job.chunks) {
     if (isVisible(chunk)) {
@@ -89,7 +93,7 @@ bool ChunkRenderer::bindForDrawing(const GlobeTiles& tiles, bool night) const {
   glUseProgram(program);
   glEnable(GL_CULL_FACE);
   glBindTextureUnit(compositeUnit, tiles.composites().composer().composites());
-  glBindSampler(compositeUnit, tiles.composites().composer().sampler());
+  glBindSampler(compositeUnit, tiles.composites().composer().samplers().plain.id());
   tiles.surfaces().pool().bind(normalUnit);
   return true;
 }
@@ -110,6 +114,14 @@ void ChunkRenderer::useProgram(GLuint program) {
   }
 }
 
+void ChunkRenderer::useSampler(const GlobeTiles& tiles, bool polar) {
+  if (polar != polar_) {
+    const Composer::Samplers& samplers = tiles.composites().composer().samplers();
+    glBindSampler(compositeUnit, polar ? samplers.polar.id() : samplers.plain.id());
+    polar_ = polar;
+  }
+}
+
 void ChunkRenderer::drawChunk(const SelectedChunk& chunk, const Job& job, GlobeTiles& tiles) {
   const ChunkSurface* surface = tiles.surfaces().find(chunk.index);
   const std::optional<std::uint32_t> slot = tiles.surfaces().slot(chunk.index);
@@ -117,6 +129,7 @@ void ChunkRenderer::drawChunk(const SelectedChunk& chunk, const Job& job, GlobeT
     return;
   }
   const bool lit = isInDaylight(*surface, job.view->lightDirection);
+  useSampler(tiles, std::abs(surface->taper()) > polarTaper);
   useProgram(lit ? programs_.daylight() : programs_.full());
   ChunkBlock block;
   for (std::size_t i = 0; i < block.corners.size(); ++i) {

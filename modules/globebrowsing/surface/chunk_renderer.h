@@ -48,10 +48,12 @@ class ChunkRenderer {
 
  private:
   void useProgram(GLuint program);
+  void useSampler(const GlobeTiles& tiles, bool polar);
   void drawChunk(const SelectedChunk& chunk, const Job& job, GlobeTiles& tiles);
 
   ChunkPrograms programs_;
-  GLuint inUse_ = 0;  ///< while draw() draws
+  GLuint inUse_ = 0;    ///< program, while draw() draws
+  bool polar_ = false;  ///< sampler, likewise
   UniformRing uniforms_;
 };
 
