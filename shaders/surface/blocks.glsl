@@ -15,4 +15,5 @@ layout(std140, binding = 1) uniform ChunkBlock {
     float skirt;            // metres
     float level;
     float normalScale;      // normal offset = (texel * 255 - 128) / 127 * this
+    float flare;            // metres: how far a skirt's foot stands out
 } chunk;

@@ -18,6 +18,10 @@ void main() {
     vec3 south = mix(chunk.corners[2].xyz, chunk.corners[3].xyz, uv.x);
     float height = offsetAndHeight.w - place.z * chunk.skirt;
     vec3 position = mix(north, south, uv.y) + offsetAndHeight.xyz + height * ellipsoidNormal;
+    // A parallel bends along the surface, too: beside a denser neighbour a gap can open that is seen from straight above,
+    // so the skirt's foot stands out under the neighbour.
+    vec3 middle = 0.25 * (chunk.corners[0].xyz + chunk.corners[1].xyz + chunk.corners[2].xyz + chunk.corners[3].xyz);
+    position += place.z * chunk.flare * normalize(position - middle);
     gl_Position = view.clipFromRelative * vec4(position, 1.0);
     unitSquare = uv;
 #if SHADING

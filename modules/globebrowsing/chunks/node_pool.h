@@ -31,6 +31,7 @@ struct ChunkNode {
   bool hasNeighbours = false;
   std::array<TileIndex, 4> neighbours{};
   std::array<Edge, 4> neighbourEdges{};  ///< of the neighbours, that lie along this node's
+  std::array<bool, 4> sameEdge{};        ///< whether that edge is just as long, not one that holds this node's
   std::array<bool, 4> hasNeighbour{};
 };
 

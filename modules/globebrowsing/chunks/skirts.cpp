@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <functional>
 
 namespace meridian::globebrowsing {
@@ -82,6 +83,7 @@ void SkirtFitter::fit(const Tiling& tiling, NodePool& pool, const TileResidency&
         node.hasNeighbour[edge] = neighbour.has_value();
         node.neighbours[edge] = neighbour ? neighbour->index : TileIndex{};
         node.neighbourEdges[edge] = neighbour ? neighbour->edge : Edge::West;
+        node.sameEdge[edge] = neighbour && std::abs(neighbour->scale) == 1.0;
       }
       node.hasNeighbours = true;
     }
@@ -99,7 +101,7 @@ void SkirtFitter::fit(const Tiling& tiling, NodePool& pool, const TileResidency&
       }
       SelectedChunk& other = drawn.chunks[static_cast<std::size_t>(slot->chunk)];
       const bool unequal = other.index.level != chunk.index.level;
-      if (!unequal && other.step == chunk.step) {
+      if (!unequal && node.sameEdge[edge] && other.step == chunk.step) {
         continue;
       }
       chunk.skirtEdges |= bit;

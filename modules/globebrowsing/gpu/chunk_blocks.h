@@ -28,7 +28,7 @@ struct ChunkBlock {
   float skirt = 0.0F;
   float level = 0.0F;
   float normalScale = 0.0F;  ///< normal offset = (texel * 255 - 128) / 127 * this
-  float padding = 0.0F;
+  float flare = 0.0F;        ///< metres: how far a skirt's foot stands out
 };
 static_assert(sizeof(ChunkBlock) == 144);
 

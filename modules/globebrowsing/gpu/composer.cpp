@@ -137,7 +137,7 @@ class TargetRestorer {
 Composer::Samplers Composer::makeSamplers() {
   Samplers made{graphics::Sampler::create(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR),
                 graphics::Sampler::create(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR)};
-  glSamplerParameterf(made.polar.id(), GL_TEXTURE_MAX_LOD, 1.0F);
+  glSamplerParameterf(made.polar.id(), GL_TEXTURE_MAX_LOD, 2.0F);
   return made;
 }
 

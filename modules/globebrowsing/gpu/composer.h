@@ -49,7 +49,7 @@ class Composer {
   struct Samplers {
     graphics::Sampler plain;
     /// For tiles that taper to a pole. There a pixel spans many texels along u that are all but one point; going by
-    /// those would blur along v as well, so at most the first half-size level is used.
+    /// those would blur along v as well, so at most the second half-size level is used.
     graphics::Sampler polar;
   };
   [[nodiscard]] static Samplers makeSamplers();

@@ -69,7 +69,27 @@ ChunkSurface::ChunkSurface(const Tiling& tiling, const TileIndex& index, std::ve
   makeNormals(all);
   for (int step = 0; step < chunk_grid::steps; ++step) {
     errors_[static_cast<std::size_t>(step)] = errorAt(all, step);
+    drifts_[static_cast<std::size_t>(step)] = driftAt(all, step);
   }
+}
+
+double ChunkSurface::driftAt(const Nodes& all, int step) {
+  const int stride = (nodes - 1) / chunk_grid::segmentsAt(step);
+  double largest = 0.0;
+  for (const int row : {0, nodes - 1}) {
+    for (int column = 0; column < nodes - 1; column += stride) {
+      const glm::dvec3& west = all.positions[Nodes::at(column, row)];
+      const glm::dvec3 edge = all.positions[Nodes::at(column + stride, row)] - west;
+      for (int i = 1; i < stride; ++i) {
+        const std::size_t node = Nodes::at(column + i, row);
+        const glm::dvec3 across = glm::cross(all.normals[node], edge);
+        const double length = glm::length(across);
+        const glm::dvec3 apart = all.positions[node] - (west + edge * (static_cast<double>(i) / stride));
+        largest = length > 0.0 ? std::max(largest, std::abs(glm::dot(apart, across)) / length) : largest;
+      }
+    }
+  }
+  return largest;
 }
 
 double ChunkSurface::taperOf(const Nodes& all) {

@@ -45,6 +45,9 @@ class ChunkSurface final : public TileData {
   [[nodiscard]] const HeightRange& heightRange() const { return range_; }
   /// Metres between the surface drawn at that step (0..4) and at every node: the largest, along the normal.
   [[nodiscard]] double error(int step) const { return errors_[static_cast<std::size_t>(step)]; }
+  /// Metres between the north and south edges drawn at that step and through every node: the largest, along the surface
+  /// and across the edge. (Parallels bend along the surface; meridians do not.)
+  [[nodiscard]] double drift(int step) const { return drifts_[static_cast<std::size_t>(step)]; }
   [[nodiscard]] std::span<const SurfaceVertex> vertices() const { return vertices_; }
   /// nodes x nodes, rows from the north.
   [[nodiscard]] std::span<const NormalOffset> normalOffsets() const { return normalOffsets_; }
@@ -69,6 +72,7 @@ class ChunkSurface final : public TileData {
   [[nodiscard]] float height(int column, int row) const;
   void makeVertices(const Nodes& all);
   void makeNormals(const Nodes& all);
+  [[nodiscard]] static double driftAt(const Nodes& all, int step);
   [[nodiscard]] static double taperOf(const Nodes& all);
   [[nodiscard]] static glm::dvec3 surfaceNormal(const Nodes& all, int column, int row);
   [[nodiscard]] double errorAt(const Nodes& all, int step) const;
@@ -77,6 +81,7 @@ class ChunkSurface final : public TileData {
   std::array<glm::dvec3, 4> corners_{};
   HeightRange range_;
   std::array<double, chunk_grid::steps> errors_{};
+  std::array<double, chunk_grid::steps> drifts_{};
   std::vector<SurfaceVertex> vertices_;
   std::vector<NormalOffset> normalOffsets_;
   double normalScale_ = 0.0;

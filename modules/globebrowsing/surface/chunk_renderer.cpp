@@ -20,6 +20,9 @@ using namespace chunk_bindings;
 /// The night layers begin to show where the light is that low over the horizon (chunk.frag).
 const double leastDaylight = std::asin(0.2);
 
+/// A skirt's foot is moved away from the middle of its chunk, which at the corners is halfway along the edge.
+constexpr double skirtFlare = 1.5;
+
 /// Tiles that touch a pole taper to nothing; in the others the wider edge is at most about twice the narrower.
 constexpr double polarTaper = 0.9;
 
@@ -148,6 +151,7 @@ void ChunkRenderer::drawChunk(const SelectedChunk& chunk, const Job& job, GlobeT
   }
   block.layers.w = static_cast<float>(*slot);
   block.skirt = static_cast<float>(chunk.skirt);
+  block.flare = static_cast<float>(skirtFlare * surface->drift(chunk.step));
   block.level = static_cast<float>(chunk.index.level);
   block.normalScale = static_cast<float>(surface->normalScale());
   uniforms_.writeAndBind(chunkBlock, block);
