@@ -16,7 +16,7 @@
 
 namespace meridian::app {
 
-/// What the process returns: DESIGN section 6.
+/// What the process returns (docs/command-line.md, Exit codes).
 enum class ExitCode : int { Done = 0, Failed = 1, WrongUsage = 2, AssetErrors = 3 };
 
 /// One `--set URI=VALUE`. The value is still text: the script engine reads it as a Lua literal.

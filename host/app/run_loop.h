@@ -14,7 +14,7 @@
 
 namespace meridian::app {
 
-/// Frames, one after the other, until there is a reason to end: DESIGN section 4, "A frame".
+/// Frames, one after the other, until there is a reason to end (docs/architecture.md, A frame).
 ///
 /// Input and scripts, clock, scene transforms (Session); renderables update and draw (SceneRenderer); panels; then swap
 /// or write. With --settle a frame is drawn again, time standing still, until every view is complete or the bound has

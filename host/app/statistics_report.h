@@ -25,7 +25,7 @@ struct Percentiles {
 /// Bytes of memory that this process has had resident at most, from the kernel's count; 0 where it is not told.
 [[nodiscard]] std::uint64_t peakResidentBytes();
 
-/// The JSON object of `--stats`, with the keys of DESIGN section 6, ended by a line break.
+/// The JSON object of `--stats`, with the keys of docs/command-line.md (Statistics), ended by a line break.
 [[nodiscard]] std::string statisticsReport(const Statistics& statistics, std::uint64_t peakResidentBytes);
 
 /// Writes the report to a file. Errors: the file cannot be created, the disk is full.

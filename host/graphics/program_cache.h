@@ -34,9 +34,10 @@ class ProgramHandle {
 
 /// Builds programs on a warm-up thread with a second, shared context, and keeps them.
 ///
-/// A program is ready only after its warm-up draw (DESIGN decision 8; measured on llvmpipe: linking takes 15 ms, the
-/// first draw up to a second). Where that compiled something, the draw is repeated on a third context, which proves
-/// that the driver has kept the machine code where the first context finds it. So a frame that uses it never waits.
+/// A program is ready only after its warm-up draw (docs/architecture.md, Programs; measured on llvmpipe: linking takes
+/// 15 ms, the first draw up to a second). Where that compiled something, the draw is repeated on a third context, which
+/// proves that the driver has kept the machine code where the first context finds it. So a frame that uses it never
+/// waits.
 /// Programs that somebody holds a handle to stay; of the others the `capacity` most recently used stay. A request whose
 /// handles are all gone before its turn is dropped. Requests are built in their order.
 ///

@@ -12,8 +12,8 @@
 
 namespace meridian::graphics {
 
-/// What frames are drawn into: RGBA8 colour and DEPTH_COMPONENT32F depth, reversed (DESIGN decision 5). Neither GLFW
-/// nor surfaceless EGL gives a float depth buffer.
+/// What frames are drawn into: RGBA8 colour and DEPTH_COMPONENT32F depth, reversed (docs/architecture.md, Depth).
+/// Neither GLFW nor surfaceless EGL gives a float depth buffer.
 class RenderTarget {
  public:
   struct Shape {

@@ -25,8 +25,8 @@ struct HeightPixels {
   float maximum = 0.0F;
 };
 
-/// Brings a raster onto a tile (after Westerteiger et al., DESIGN decision 10). Coordinates and
-/// heights are in double, sums of colours in float.
+/// Brings a raster onto a tile (after Westerteiger et al.; docs/architecture.md, Resampling). Coordinates and heights
+/// are in double, sums of colours in float.
 ///
 /// The raster's level of detail is that whose pixels are at most as large as the tile's samples; the kernel (colours:
 /// triangle; heights: Catmull-Rom cubic, a = -0.5, Keys 1981) widens with what is left, so that nothing aliases.

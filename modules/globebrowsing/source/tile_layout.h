@@ -34,7 +34,7 @@ struct TileLayout {
   bool operator==(const TileLayout&) const = default;
 };
 
-/// DESIGN decision 16.
+/// The layouts of all tiles (docs/architecture.md, Sizes and budgets).
 inline constexpr TileLayout colourLayout{512, 8, Registration::PixelCentred};
 inline constexpr TileLayout heightLayout{129, 1, Registration::NodeRegistered};
 

@@ -12,7 +12,7 @@ from .programs import (EARTH, Failed, drop_data_from_memory, empty_shader_cache,
 from .registry import AT_LEAST, AT_MOST, benchmark
 
 MIB = 1 << 20
-# DESIGN decision 16: tile cache, texture pool, GDAL's cache; and what the program itself may take.
+# docs/architecture.md, Sizes and budgets: tile cache, texture pool, GDAL's cache; and what the program itself may take.
 MEMORY_LIMIT_MIB = 512 + 512 + 64 + 300
 
 PLACES = {"orbit": "20,10,20000000", "100km": "46.5,8,100000", "2km": "44.9,9.4,2000"}
