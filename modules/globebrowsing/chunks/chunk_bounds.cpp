@@ -176,11 +176,13 @@ ChunkBounds chunkBounds(const Tiling& tiling, const TileIndex& index, const Heig
   bounds.edgeLength = std::max({north, south, west, east});
   bounds.area = edgeLength(samples, false, cells / 2) * edgeLength(samples, true, cells / 2);
   bounds.normal = samples.normals[Samples::at(cells / 2, cells / 2)];
-  const std::array<std::size_t, 5> places{Samples::at(cells / 2, cells / 2), Samples::at(0, 0), Samples::at(cells, 0),
-                                          Samples::at(0, cells), Samples::at(cells, cells)};
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    bounds.normals[i] = samples.normals[places[i]];
-    bounds.points[i] = samples.points[places[i]] + 0.5 * (range.minimum + range.maximum) * bounds.normals[i];
+  std::size_t next = 0;
+  for (const int row : {0, cells / 2, cells}) {
+    for (const int column : {0, cells / 2, cells}) {
+      const std::size_t place = Samples::at(column, row);
+      bounds.normals[next] = samples.normals[place];
+      bounds.points[next++] = samples.points[place] + 0.5 * (range.minimum + range.maximum) * samples.normals[place];
+    }
   }
   return bounds;
 }

@@ -35,10 +35,10 @@ struct ChunkBounds {
   double edgeLength = 0.0;  ///< metres on the ellipsoid: the longest of the tile's four edges
   double area = 0.0;        ///< square metres on the ellipsoid, to a few percent
   glm::dvec3 normal{0.0};   ///< of the ellipsoid in the tile's middle
-  /// The tile's middle and corners at the middle of the height range, and the ellipsoid's normals there: where the
-  /// chunk tree looks at how large an error appears.
-  std::array<glm::dvec3, 5> points{};
-  std::array<glm::dvec3, 5> normals{};
+  /// The tile's middle, corners and middles of edges at the middle of the height range, and the ellipsoid's normals
+  /// there: where the chunk tree looks at how large an error appears.
+  std::array<glm::dvec3, 9> points{};
+  std::array<glm::dvec3, 9> normals{};
 };
 
 /// Both bounds hold every point of the tile whose height is within the range. For a separable tiling that is proved: a

@@ -122,7 +122,7 @@ double cornerCosine(const glm::dmat4& clipFromModel) {
 }
 
 /// A displacement along the vertical moves across the picture by the sine of the angle at which it is seen. From
-/// farther than the tile's edge that hardly bends between its corners and middle; from nearer every angle occurs.
+/// farther than the tile's edge that hardly bends between a few of its points; from nearer every angle occurs.
 ErrorScale errorScale(const ChunkBounds& bounds, const PreparedView& view, double distance) {
   ErrorScale scale;
   if (distance < bounds.edgeLength) {
@@ -130,12 +130,13 @@ ErrorScale errorScale(const ChunkBounds& bounds, const PreparedView& view, doubl
     scale.vertical = scale.along;
     return scale;
   }
+  constexpr double betweenPoints = 1.02;
   for (std::size_t i = 0; i < bounds.points.size(); ++i) {
     const glm::dvec3 towards = view.position - bounds.points[i];
     const double inverse = 1.0 / glm::length(towards);
     const double cosine = std::max(0.0, glm::dot(towards, bounds.normals[i]) * inverse);
     const double offAxis = std::max(view.leastCosine, -glm::dot(towards, view.forward) * inverse);
-    const double here = view.pixelsPerRadian * inverse / (offAxis * offAxis);
+    const double here = betweenPoints * view.pixelsPerRadian * inverse / (offAxis * offAxis);
     scale.along = std::max(scale.along, here);
     scale.vertical = std::max(scale.vertical, here * std::sqrt(std::max(0.0, 1.0 - cosine * cosine)));
   }

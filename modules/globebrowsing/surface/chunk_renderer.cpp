@@ -10,6 +10,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "globebrowsing/gpu/chunk_blocks.h"
+#include "globebrowsing/source/tile_layout.h"
 
 namespace meridian::globebrowsing {
 
@@ -25,6 +26,14 @@ constexpr double skirtFlare = 1.5;
 
 /// Tiles that touch a pole taper to nothing; in the others the wider edge is at most about twice the narrower.
 constexpr double polarTaper = 0.9;
+
+/// Whether a chunk is sampled as polar tiles are. One that is shown much smaller than its composite needs all levels.
+bool isPolar(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
+  constexpr double mostTexelsPerPixel = 3.0;
+  const double meridian = glm::distance(surface.corners()[0], surface.corners()[2]);
+  return std::abs(surface.taper()) > polarTaper &&
+         colourLayout.interior * chunk.distance < mostTexelsPerPixel * meridian * view.pixelsPerRadian;
+}
 
 /// A camera that is not a number never reaches the GPU.
 bool isFinite(const ViewBlock& view) {
@@ -132,7 +141,7 @@ void ChunkRenderer::drawChunk(const SelectedChunk& chunk, const Job& job, GlobeT
     return;
   }
   const bool lit = isInDaylight(*surface, job.view->lightDirection);
-  useSampler(tiles, std::abs(surface->taper()) > polarTaper);
+  useSampler(tiles, isPolar(*surface, chunk, *job.view));
   useProgram(lit ? programs_.daylight() : programs_.full());
   ChunkBlock block;
   for (std::size_t i = 0; i < block.corners.size(); ++i) {
