@@ -20,19 +20,21 @@ class SettledGlobe {
   SettledGlobe(const SettledGlobe&) = delete;
   SettledGlobe& operator=(const SettledGlobe&) = delete;
 
+  /// Draws until nothing is left to load, at most a minute. Errors: something is.
+  Result<void> settle();
   /// Draws a frame and waits for it, with the blit of a window's frame; milliseconds.
   double frame();
   /// Copies the drawn frame, as a window would show it.
   void blit();
 
   [[nodiscard]] globebrowsing::ChunkedSurface& surface();
+  [[nodiscard]] app::Application& application() { return *application_; }
   [[nodiscard]] app::SceneRenderer& renderer() { return *renderer_; }
   /// Of the last frame.
   [[nodiscard]] View view() const;
 
  private:
   SettledGlobe() = default;
-  Result<void> settle();
 
   std::unique_ptr<graphics::Context> context_;
   std::unique_ptr<app::Application> application_;

@@ -44,18 +44,15 @@ def read_json(text, where):
         raise Failed(f"{where}: no JSON: {error}") from None
 
 
-def play(recording, *arguments, environment=None):
-    """Flies a Recording over the Earth off screen; the figures of --stats."""
+def play(recording, environment=None):
+    """Flies a Recording over the Earth off screen, from a settled first frame and with frames as far apart as on a screen,
+    so that tiles have as long to arrive; the figures of --stats."""
     with tempfile.TemporaryDirectory(prefix="meridian-bench-") as folder:
-        flight, figures = Path(folder, "flight.osrectxt"), Path(folder, "stats.json")
+        flight = Path(folder, "flight.osrectxt")
         recording.write(flight)
-        run("meridian", *EARTH, "--headless", "--size", "1280x720", "--play", flight,
-            "--frames", len(recording.poses), "--fps", FRAMES_PER_SECOND, "--stats", figures, "--log", "warning",
-            *arguments, environment=environment)
-        stats = read_json(figures.read_text(), figures.name)
-    if stats["frames"] != len(recording.poses):
-        raise Failed(f"meridian drew {stats['frames']} frames instead of {len(recording.poses)}")
-    return stats
+        text = run("bench-flight", "--play", flight, "--frames", len(recording.poses), "--fps", FRAMES_PER_SECOND,
+                   environment=environment)
+    return read_json(text, "bench-flight")
 
 
 def percentile(values, percent):
