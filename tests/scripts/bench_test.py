@@ -20,9 +20,8 @@ argument = lambda name: sys.argv[sys.argv.index(name) + 1]
 frames = [10.0] * int(argument("--frames"))
 for frame, times in {slow}.items():
     frames[frame] *= times
-with open(argument("--stats"), "w") as file:
-    json.dump({{"frames": len(frames), "per_frame": {{"frame_ms": frames}},
-               "programs": {{"frames_waited": 3}}, "memory": {{"peak_rss": 700 << 20}}}}, file)
+json.dump({{"frames": len(frames), "per_frame": {{"frame_ms": frames}},
+           "programs": {{"frames_waited": 3}}, "memory": {{"peak_rss": 700 << 20}}}}, sys.stdout)
 """
 
 
@@ -71,7 +70,7 @@ class Flights(unittest.TestCase):
 class Ratios(unittest.TestCase):
     def measure(self, slow, function):
         with tempfile.TemporaryDirectory() as folder:
-            program = Path(folder, "meridian")
+            program = Path(folder, "bench-flight")
             program.write_text(textwrap.dedent(PROGRAM.format(slow=slow)))
             program.chmod(0o755)
             before, programs.BIN = programs.BIN, Path(folder)
@@ -86,9 +85,9 @@ class Ratios(unittest.TestCase):
         self.assertAlmostEqual(self.measure({30 + 9 * n: 3 for n in range(10)}, spine.streaming_flight), 3.0)
 
     def test_toggling_compares_the_third_flight_with_the_second(self):
-        third = 120 + 500 + 30 + 500 + 30
+        third = 500 + 30 + 500 + 30
         self.assertAlmostEqual(self.measure({third + 20 * n: 2 for n in range(20)}, spine.toggle_cached), 2.0)
-        self.assertAlmostEqual(self.measure({120 + 20 * n: 2 for n in range(20)}, spine.toggle_cached), 1.0)
+        self.assertAlmostEqual(self.measure({20 * n: 2 for n in range(20)}, spine.toggle_cached), 1.0)
 
     def test_memory_is_in_mebibytes(self):
         self.assertEqual(self.measure({}, spine.peak_memory), 700)

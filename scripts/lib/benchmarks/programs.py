@@ -52,7 +52,10 @@ def play(recording, environment=None):
         recording.write(flight)
         text = run("bench-flight", "--play", flight, "--frames", len(recording.poses), "--fps", FRAMES_PER_SECOND,
                    environment=environment)
-    return read_json(text, "bench-flight")
+    stats = read_json(text, "bench-flight")
+    if stats["frames"] != len(recording.poses):
+        raise Failed(f"bench-flight drew {stats['frames']} frames instead of {len(recording.poses)}")
+    return stats
 
 
 def percentile(values, percent):
