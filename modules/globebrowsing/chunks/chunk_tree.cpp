@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -12,12 +11,12 @@
 #include "globebrowsing/chunks/evaluators.h"
 #include "globebrowsing/chunks/node_pool.h"
 #include "globebrowsing/chunks/skirts.h"
+#include "globebrowsing/chunks/view_demand.h"
 
 namespace meridian::globebrowsing {
 
 namespace {
 
-constexpr std::size_t mostViews = 32;
 constexpr int finestStep = 4;
 /// A tile that this step does not bring within the error splits: large tiles at 8 segments a side, because beyond the
 /// horizon they are culled whole or not at all; others at 16, because a chunk costs something too. The steps left are
@@ -30,8 +29,6 @@ constexpr int splitStep(int level) {
 /// A float holds 24 bits: a corner patch's edge times this is the error of a vertex along it.
 constexpr double floatPrecision = 0x1p-23;
 constexpr double maximumPrecisionPixels = 0.05;
-/// Metres: nothing is nearer than the near plane; keeps the camera inside a box from asking for endless detail.
-constexpr double nearestDistance = 0.01;
 /// Frames for which a node that is not visited is kept.
 constexpr std::uint64_t patience = 120;
 /// Of the inner nodes without a surface, only these levels are asked for, as a picture to start with.
@@ -40,24 +37,6 @@ constexpr int stopgapLevels = 3;
 /// Priorities: roots, then what is needed now, then what may be needed soon. Within a class by urgency.
 constexpr double rootPriority = 3.0;
 constexpr double neededPriority = 1.0;
-
-bool isUsable(const SelectionView& view) {
-  constexpr double farthest = 1e30;
-  constexpr double fewestPixels = 1e-6;
-  constexpr double mostPixels = 1e12;
-  if (!(glm::length(view.cameraPosition) < farthest) || !(view.pixelsPerRadian > fewestPixels) ||
-      !(view.pixelsPerRadian < mostPixels)) {
-    return false;
-  }
-  for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) {
-      if (!std::isfinite(view.clipFromModel[column][row])) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
 
 double orElse(double value, double least, double otherwise) {
   return std::isfinite(value) && value >= least ? value : otherwise;
@@ -74,74 +53,11 @@ SelectionSettings inRange(const SelectionSettings& settings) {
   return result;
 }
 
-/// A view made ready for many tiles.
-struct PreparedView {
-  glm::dvec3 position{0.0};
-  glm::dvec3 forward{0.0};  ///< unit, or zero where the matrix has none
-  double pixelsPerRadian = 0.0;
-  double leastCosine = 1.0;  ///< between forward and the corners of the picture
-  std::uint32_t bit = 0;
-  Frustum frustum;
-  Horizon horizon{glm::dvec3(1.0), 0.0, glm::dvec3(0.0)};
-};
-
-/// Pixels that a metre covers, at most, within a tile, on the flat picture, which stretches what is off its middle.
-struct ErrorScale {
-  double vertical = 0.0;  ///< along the vertical, seen at the tile's slant
-  double along = 0.0;     ///< along the surface
-};
-
-/// What all views together ask of a tile.
-struct Demand {
-  std::uint32_t views = 0;  ///< that see it
-  bool beside = false;      ///< some view would see it, looking elsewhere
-  double distance = 0.0;
-  double urgency = 0.0;
-  double pixelsPerMetre = 0.0;  ///< at the tile's nearest point
-  ErrorScale error;
-  double centred = 0.0;  ///< 1 in the middle of a view, 0 behind it
-};
-
 /// Why a tile splits.
 struct Refinement {
   bool colours = false;
   bool surface = false;
 };
-
-/// The cosine between the middle of the picture and its corners, 1 where the matrix has no perspective. The rows of a
-/// perspective matrix are the picture's axes, as long as a radian is in half pictures.
-double cornerCosine(const glm::dmat4& clipFromModel) {
-  const auto rowLength = [&](int row) {
-    return glm::length(glm::dvec3(clipFromModel[0][row], clipFromModel[1][row], clipFromModel[2][row]));
-  };
-  const double ahead = rowLength(3);
-  const double across = ahead / rowLength(0);
-  const double up = ahead / rowLength(1);
-  const double cosine = 1.0 / std::sqrt(1.0 + across * across + up * up);
-  return ahead > 0.0 && std::isfinite(cosine) ? cosine : 1.0;
-}
-
-/// A displacement along the vertical moves across the picture by the sine of the angle at which it is seen. From
-/// farther than the tile's edge that hardly bends between a few of its points; from nearer every angle occurs.
-ErrorScale errorScale(const ChunkBounds& bounds, const PreparedView& view, double distance) {
-  ErrorScale scale;
-  if (distance < bounds.edgeLength) {
-    scale.along = view.pixelsPerRadian / (distance * view.leastCosine * view.leastCosine);
-    scale.vertical = scale.along;
-    return scale;
-  }
-  constexpr double betweenPoints = 1.02;
-  for (std::size_t i = 0; i < bounds.points.size(); ++i) {
-    const glm::dvec3 towards = view.position - bounds.points[i];
-    const double inverse = 1.0 / glm::length(towards);
-    const double cosine = std::max(0.0, glm::dot(towards, bounds.normals[i]) * inverse);
-    const double offAxis = std::max(view.leastCosine, -glm::dot(towards, view.forward) * inverse);
-    const double here = betweenPoints * view.pixelsPerRadian * inverse / (offAxis * offAxis);
-    scale.along = std::max(scale.along, here);
-    scale.vertical = std::max(scale.vertical, here * std::sqrt(std::max(0.0, 1.0 - cosine * cosine)));
-  }
-  return scale;
-}
 
 }  // namespace
 
@@ -156,7 +72,6 @@ class ChunkTree::Implementation {
   [[nodiscard]] const SelectionFigures& figures() const { return figures_; }
 
  private:
-  void prepare(std::span<const SelectionView> views);
   /// Selects what covers the node; false when something in it cannot be drawn.
   bool visit(NodeNumber number);
   bool visitTarget(NodeNumber number, const Demand& demand);
@@ -166,7 +81,7 @@ class ChunkTree::Implementation {
   bool coverByFinerChild(NodeNumber number, bool drawnOnly);
 
   void updateBounds(ChunkNode& node);
-  [[nodiscard]] Demand demandOn(const ChunkNode& node) const;
+  [[nodiscard]] Demand demandOn(const ChunkNode& node) const { return views_.demandOn(node.bounds, node.horizonCap); }
   /// Of the tile drawn at that step.
   [[nodiscard]] double errorPixels(const ChunkNode& node, int step, const Demand& demand) const;
   [[nodiscard]] Refinement refinement(const ChunkNode& node, const Demand& demand) const;
@@ -190,11 +105,8 @@ class ChunkTree::Implementation {
   std::vector<NodeNumber> roots_;
   std::uint64_t frame_ = 1;
 
-  std::array<PreparedView, mostViews> views_{};
-  std::size_t viewCount_ = 0;
-  double occluderScale_ = 1.0;
+  PreparedViews views_;
   SelectionSettings settings_;
-  const EvaluatorStrategy* evaluator_ = &evaluatorOf(Evaluator::ScreenSpaceError);
   TileResidency* residency_ = nullptr;
 
   std::vector<SelectedChunk> selected_;
@@ -219,48 +131,23 @@ void ChunkTree::Implementation::select(std::span<const SelectionView> views, con
                                        TileResidency& residency) {
   ++frame_;
   settings_ = inRange(settings);
-  evaluator_ = &evaluatorOf(settings_.evaluator);
   residency_ = &residency;
   figures_ = {};
   provisional_ = false;
   truncate(0);
-  prepare(views);
+  views_.prepare(views, settings_, tiling_.ellipsoid().radii());
   for (const NodeNumber root : roots_) {
     residency.want(pool_[root].index, 0, rootPriority);
     keep(pool_[root]);
   }
   bool covered = true;
-  if (viewCount_ > 0) {
+  if (!views_.empty()) {
     for (const NodeNumber root : roots_) {
       covered = visit(root) && covered;
     }
   }
   figures_.atTarget = covered && figures_.missing == 0 && !provisional_;
   finish();
-}
-
-void ChunkTree::Implementation::prepare(std::span<const SelectionView> views) {
-  const glm::dvec3& radii = tiling_.ellipsoid().radii();
-  occluderScale_ = Horizon::occluderScale(radii, settings_.lowestHeight);
-  viewCount_ = 0;
-  for (std::size_t i = 0; i < std::min(views.size(), mostViews); ++i) {
-    const SelectionView& view = views[i];
-    if (!isUsable(view)) {
-      continue;
-    }
-    PreparedView& prepared = views_[viewCount_++];
-    prepared.position = view.cameraPosition;
-    prepared.pixelsPerRadian = view.pixelsPerRadian;
-    prepared.bit = std::uint32_t{1} << i;
-    prepared.frustum = settings_.frustumCulling ? Frustum(view.clipFromModel) : Frustum();
-    // From the middle of the globe the horizon hides nothing.
-    prepared.horizon =
-        Horizon(radii, settings_.lowestHeight, settings_.horizonCulling ? view.cameraPosition : glm::dvec3(0.0));
-    const glm::dvec3 ahead(view.clipFromModel[0][3], view.clipFromModel[1][3], view.clipFromModel[2][3]);
-    const double length = glm::length(ahead);
-    prepared.forward = length > 0.0 && std::isfinite(length) ? ahead / length : glm::dvec3(0.0);
-    prepared.leastCosine = cornerCosine(view.clipFromModel);
-  }
 }
 
 void ChunkTree::Implementation::updateBounds(ChunkNode& node) {
@@ -271,46 +158,10 @@ void ChunkTree::Implementation::updateBounds(ChunkNode& node) {
     node.bounded = true;
     node.occluderScale = -1.0;
   }
-  if (node.occluderScale != occluderScale_) {
-    node.horizonCap = Horizon::capOf(node.bounds.cap, occluderScale_);
-    node.occluderScale = occluderScale_;
+  if (node.occluderScale != views_.occluderScale()) {
+    node.horizonCap = Horizon::capOf(node.bounds.cap, views_.occluderScale());
+    node.occluderScale = views_.occluderScale();
   }
-}
-
-Demand ChunkTree::Implementation::demandOn(const ChunkNode& node) const {
-  Demand demand;
-  demand.distance = 1e300;
-  const OrientedBox& box = node.bounds.box;
-  for (std::size_t i = 0; i < viewCount_; ++i) {
-    const PreparedView& view = views_[i];
-    if (view.horizon.hides(node.horizonCap)) {
-      continue;
-    }
-    if (view.frustum.touches(box)) {
-      demand.views |= view.bit;
-    } else {
-      demand.beside = true;
-    }
-    // A tile that a view turns its back on still counts by its distance, so that views in all directions agree.
-    TileMeasure measure;
-    measure.edgeLength = node.bounds.edgeLength;
-    measure.area = node.bounds.area;
-    measure.distance = std::max(box.distance(view.position), nearestDistance);
-    measure.pixelsPerRadian = view.pixelsPerRadian;
-    const glm::dvec3 towards = view.position - box.centre;
-    const double centreDistance = std::max(glm::length(towards), nearestDistance);
-    const double tilt = std::abs(glm::dot(towards, node.bounds.normal)) / centreDistance;
-    measure.facing = std::min(1.0, tilt + 0.5 * measure.edgeLength / centreDistance);
-    demand.urgency = std::max(demand.urgency, evaluator_->urgency(measure, settings_));
-    const double pixelsPerMetre = view.pixelsPerRadian / measure.distance;
-    demand.pixelsPerMetre = std::max(demand.pixelsPerMetre, pixelsPerMetre);
-    const ErrorScale scale = errorScale(node.bounds, view, measure.distance);
-    demand.error.vertical = std::max(demand.error.vertical, scale.vertical);
-    demand.error.along = std::max(demand.error.along, scale.along);
-    demand.distance = std::min(demand.distance, measure.distance);
-    demand.centred = std::max(demand.centred, 0.5 - 0.5 * glm::dot(towards, view.forward) / centreDistance);
-  }
-  return demand;
 }
 
 Refinement ChunkTree::Implementation::refinement(const ChunkNode& node, const Demand& demand) const {
@@ -318,7 +169,8 @@ Refinement ChunkTree::Implementation::refinement(const ChunkNode& node, const De
   if (node.index.level >= settings_.deepestLevel) {
     return wanted;
   }
-  wanted.colours = demand.urgency > 1.0 && (!evaluator_->limitedByData() || residency_->hasFinerColours(node.index));
+  wanted.colours = demand.urgency > 1.0 &&
+                   (!evaluatorOf(settings_.evaluator).limitedByData() || residency_->hasFinerColours(node.index));
   wanted.surface = node.bounds.edgeLength * floatPrecision * demand.pixelsPerMetre > maximumPrecisionPixels ||
                    errorPixels(node, splitStep(node.index.level), demand) > settings_.maximumErrorPixels;
   return wanted;
@@ -494,10 +346,6 @@ void ChunkTree::Implementation::truncate(std::size_t count) {
 }
 
 void ChunkTree::Implementation::finish() {
-  double finestPixels = 0.0;
-  for (std::size_t i = 0; i < viewCount_; ++i) {
-    finestPixels = std::max(finestPixels, views_[i].pixelsPerRadian);
-  }
   for (const NodeNumber number : numbers_) {
     pool_[number].selectedFrame = frame_;
     for (NodeNumber up = pool_[number].parent; up != noNode && pool_[up].belowFrame != frame_; up = pool_[up].parent) {
@@ -505,7 +353,8 @@ void ChunkTree::Implementation::finish() {
     }
   }
   if (!selected_.empty()) {
-    skirts_.fit(tiling_, pool_, *residency_, {selected_, numbers_, settings_.maximumErrorPixels, 1.0 / finestPixels});
+    skirts_.fit(tiling_, pool_, *residency_,
+                {selected_, numbers_, settings_.maximumErrorPixels, 1.0 / views_.finestPixels()});
   }
   std::sort(selected_.begin(), selected_.end(), [](const SelectedChunk& a, const SelectedChunk& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.index < b.index;

@@ -13,10 +13,14 @@ namespace meridian::globebrowsing {
 /// the settings ask and as what is in memory allows. A pure algorithm: it knows tiles by index only and asks a
 /// TileResidency for the rest.
 ///
-/// A tile splits while any view asks for it, wherever the view looks: while the evaluator finds it too coarse (and, for
-/// evaluators limited by data, finer colours exist), while its geometric error at 32 segments exceeds
-/// settings.maximumErrorPixels, or while its edge times 2^-23 (the precision of a float along it) exceeds 0.05 pixel,
-/// all at its nearest point. What remains are the target chunks; each is drawn with the fewest segments that keep the
+/// A tile splits while any view asks for it:
+/// - for its colours, wherever the view looks, while the evaluator finds it too coarse at its nearest point (and, for
+///   evaluators limited by data, finer colours exist);
+/// - for its surface, while its geometric error at 8 segments a side (from level 4 on 16) appears larger than
+///   settings.maximumErrorPixels on the view's picture, weighed by the slant at which it is seen, or its edge times
+///   2^-23 (the precision of a float along it) exceeds 0.05 pixel. Tiles below one that split for its surface alone
+///   draw its composite, so that relief does not force colours to split.
+/// What remains are the target chunks; each is drawn with the fewest segments that keep the
 /// error.
 ///
 /// Targets and roots are wanted. While a target has no surface, the nearest ancestor that has one is drawn in place of
