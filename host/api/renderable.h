@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "host/api/error.h"
 #include "host/api/frame_context.h"
@@ -45,6 +46,7 @@ class Renderable : public PropertyOwner {
     std::size_t globes = 0;
     std::size_t layers = 0;
     std::size_t usableLayers = 0;  ///< their provider can be built and their local data exist
+    std::vector<Error> unusable;   ///< why the data of the others do not
   };
   [[nodiscard]] virtual Contents contents() const { return {}; }
 

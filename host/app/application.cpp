@@ -106,6 +106,7 @@ Result<void> Application::addNode(const Value& table, const std::string& where, 
     counts_.globes += contents.globes;
     counts_.layers += contents.layers;
     counts_.usableLayers += contents.usableLayers;
+    counts_.unusable.insert(counts_.unusable.end(), contents.unusable.begin(), contents.unusable.end());
   }
   return {};
 }

@@ -38,6 +38,7 @@ struct SceneCounts {
   std::size_t globes = 0;
   std::size_t layers = 0;
   std::size_t usableLayers = 0;
+  std::vector<Error> unusable;  ///< of layers whose local data are missing
 };
 
 /// Everything of a running program but windows and drawing: the scene with its camera, time, scripts, assets and

@@ -52,6 +52,9 @@ AssetCheck checkAssets(Application& application, const std::vector<std::string>&
     }
   }
   check.counts = application.counts();
+  for (const Error& unusable : check.counts.unusable) {
+    log::warning("not usable: {}", unusable.message());
+  }
   return check;
 }
 

@@ -144,7 +144,7 @@ class QueuedWriter final : public FrameWriter {
   }
 
   std::unique_ptr<Sink> sink_;
-  glm::ivec2 size_;
+  [[maybe_unused]] glm::ivec2 size_;  ///< for assertions
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<graphics::Image> queue_;

@@ -72,20 +72,40 @@ Result<DataFolders> findDataFolders(const fs::path& executable) {
                  "install the program with its data, or keep the source tree where it was built");
 }
 
-std::optional<fs::path> findCacheFolder() {
+namespace {
+
+std::optional<fs::path> nameOfCacheFolder() {
   auto parent = absoluteFromEnvironment("XDG_CACHE_HOME");
   if (!parent) {
     if (const auto home = absoluteFromEnvironment("HOME")) {
       parent = *home / ".cache";
     }
   }
-  if (!parent) {
+  return parent ? std::optional(*parent / "meridian") : std::nullopt;
+}
+
+/// In place of a cache that cannot be written; what was prepared in that one can still be read.
+fs::path makeCacheIn(const fs::path& temporary) {
+  fs::path cache = temporary / "cache";
+  std::error_code error;
+  fs::create_directories(cache, error);
+  const auto unwritable = nameOfCacheFolder();
+  if (unwritable && access((*unwritable / "data").c_str(), R_OK | X_OK) == 0) {
+    fs::create_directory_symlink(*unwritable / "data", cache / "data", error);
+  }
+  return cache;
+}
+
+}  // namespace
+
+std::optional<fs::path> findCacheFolder() {
+  auto folder = nameOfCacheFolder();
+  if (!folder) {
     return std::nullopt;
   }
-  const fs::path folder = *parent / "meridian";
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || access(folder.c_str(), W_OK | X_OK) != 0) {
+  fs::create_directories(*folder, error);
+  if (error || access(folder->c_str(), W_OK | X_OK) != 0) {
     return std::nullopt;
   }
   return folder;
@@ -106,7 +126,7 @@ Result<Paths> findPaths(const fs::path& temporary) {
   if (const auto cache = findCacheFolder()) {
     paths.cache = *cache;
   } else {
-    paths.cache = temporary / "cache";
+    paths.cache = makeCacheIn(temporary);
     log::warning("no cache folder can be written: what is cached is lost at the end; set XDG_CACHE_HOME to one");
   }
   paths.sync = paths.cache / "sync";

@@ -37,8 +37,8 @@ struct DataFolders {
 /// $XDG_CACHE_HOME/meridian, else ~/.cache/meridian, created; nothing where neither can be written.
 [[nodiscard]] std::optional<std::filesystem::path> findCacheFolder();
 
-/// All of this process. The cache falls back to `temporary`, with a warning. `assets` stands for ${ASSETS} and is made
-/// absolute. Errors as for findDataFolders.
+/// All of this process. The cache falls back to `temporary`, with a warning; prepared data of one that can only be read
+/// are seen there. `assets` stands for ${ASSETS} and is made absolute. Errors as for findDataFolders.
 [[nodiscard]] Result<Paths> findPaths(const std::filesystem::path& temporary);
 
 }  // namespace meridian::app

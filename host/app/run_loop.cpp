@@ -124,7 +124,9 @@ Result<void> RunLoop::drawUntilSettled(Clock::time_point begin) {
   auto& figures = parts_.application.statistics().settled;
   const auto start = Clock::now();
   Settled settled = parts_.renderer.settled();
-  while (!settled.complete && !isStopped() && millisecondsSince(start) < 1000.0 * *options_.settleSeconds) {
+  // Where the ground is shows as it loads: a camera that was put below it is outside in the picture.
+  while ((parts_.session.keepClear() || !settled.complete) && !isStopped() &&
+         millisecondsSince(start) < 1000.0 * *options_.settleSeconds) {
     std::this_thread::sleep_for(settlePause);
     if (parts_.window != nullptr) {
       graphics::WindowContext::pollEvents();

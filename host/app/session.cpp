@@ -81,6 +81,10 @@ Result<void> Session::advance() {
   return recorder_ ? recorder_->addFrame(seconds, application_.clock().time(), application_.camera()) : Result<void>{};
 }
 
+bool Session::keepClear() {
+  return !player_ && application_.navigator().keepClear();
+}
+
 Result<void> Session::finish() {
   if (!recorder_) {
     return {};

@@ -27,6 +27,8 @@ class Session {
   /// One frame later: scripts, clock, animations, scene transforms, camera, in this order. The first frame is at the
   /// start. Errors: the recording cannot be written any more.
   [[nodiscard]] Result<void> advance();
+  /// Lifts a camera that no recording moves out of terrain that was loaded since `advance`. Whether that moved it.
+  bool keepClear();
   /// Writes the end of what is recorded.
   [[nodiscard]] Result<void> finish();
 

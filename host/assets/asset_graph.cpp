@@ -26,13 +26,16 @@ fs::path withExtension(const fs::path& path) {
   if (path.extension() == ".asset" || (path.has_extension() && !fs::is_regular_file(extended, ignored))) {
     return path;
   }
+  if (fs::is_directory(path, ignored) && !fs::exists(extended, ignored)) {
+    return path;  // for the message: a user who names a folder should not hear of a file that nobody named
+  }
   return extended;
 }
 
 Result<std::string> readAsset(const fs::path& file) {
   std::error_code error;
   if (fs::is_directory(file, error)) {
-    return failure("this is a folder, not an asset", file.string());
+    return failure("this is a folder, not an asset", file.string(), "name an .asset file in it");
   }
   if (!fs::is_regular_file(file, error)) {
     return failure("no such asset", file.string(), "check the path");

@@ -19,6 +19,8 @@ constexpr double zoomPerNotch = 0.2;
 constexpr double farthestDistance = 1e18;
 /// The part of the distance to a body without a known size that zooming never crosses. Metres.
 constexpr double nearestDistance = 0.1;
+/// A camera that was just put to its clearance may miss it by less than this, and is not moved by that. Metres.
+constexpr double roundingOfHeights = 1e-3;
 
 }  // namespace
 
@@ -160,11 +162,12 @@ void OrbitNavigator::turn(const glm::dvec2& tilt, double roll) {
   static_cast<void>(camera_.setPose(pose));
 }
 
-void OrbitNavigator::keepClear() {
+bool OrbitNavigator::keepClear() {
   const scene::SceneNode& anchor = camera_.anchor();
   const Ground* ground = anchor.ground();
-  if (ground == nullptr || height() >= minimumClearance.get()) {
-    return;
+  const double missing = ground != nullptr ? minimumClearance.get() - height() : 0.0;
+  if (!(missing > 0.0)) {
+    return false;
   }
   const double scale = camera_.scene().worldFromNode(anchor).scale;
   Pose pose = camera_.pose();
@@ -172,6 +175,7 @@ void OrbitNavigator::keepClear() {
   place.height = ground->heightAt(place.latitude, place.longitude) + minimumClearance.get() / scale;
   pose.position = scale * ground->cartesian(place);
   static_cast<void>(camera_.setPose(pose));
+  return missing > roundingOfHeights;
 }
 
 }  // namespace meridian::navigation

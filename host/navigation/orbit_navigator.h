@@ -30,6 +30,8 @@ class OrbitNavigator final : public PropertyOwner {
   /// Moves the camera by what was dragged and by what is left of earlier motion, then lifts it out of the terrain. Call
   /// once a frame.
   void update(double seconds);
+  /// Only lifts the camera out of the terrain as far as that is loaded. Whether that moved it.
+  bool keepClear();
   /// Forgets what is left of earlier motion.
   void stop();
 
@@ -54,7 +56,6 @@ class OrbitNavigator final : public PropertyOwner {
   void orbit(const glm::dvec2& delta);
   void zoom(double amount);
   void turn(const glm::dvec2& tilt, double roll);
-  void keepClear();
 
   Camera& camera_;
   Motions pending_;

@@ -236,11 +236,15 @@ void RenderableGlobe::draw(const FrameContext& frame, std::size_t view) {
 }
 
 Renderable::Contents RenderableGlobe::contents() const {
-  Contents found{1, layerErrors_.size(), 0};
+  Contents found{1, layerErrors_.size(), 0, {}};
   for (const LayerGroupId id : allLayerGroups) {
     for (const auto& layer : layers_.group(id).layers()) {
       ++found.layers;
-      found.usableLayers += layer->provider()->check() ? 1 : 0;
+      if (const Result<void> checked = layer->provider()->check()) {
+        ++found.usableLayers;
+      } else {
+        found.unusable.push_back(checked.error());
+      }
     }
   }
   return found;

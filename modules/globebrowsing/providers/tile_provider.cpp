@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "host/api/log.h"
+
 namespace meridian::globebrowsing {
 
 std::optional<Error> TileProvider::error() const {
@@ -41,8 +43,10 @@ void TileProvider::openOn(WorkerPool& workers, std::shared_ptr<TileProvider> pro
   State expected = State::NotOpened;
   if (provider->state_.compare_exchange_strong(expected, State::Opening)) {
     workers.post([provider = std::move(provider)](const std::stop_token&) {
-      // The outcome is kept in state() and error().
-      static_cast<void>(provider->open());
+      // The outcome is kept in state() and error(), but a user who looks at a bare globe looks at the log first.
+      if (const Result<void> opened = provider->open(); !opened) {
+        log::error("{}", opened.error().message());
+      }
     });
   }
 }

@@ -36,7 +36,7 @@ class TileProvider {
   /// Opens unless it is open, on this thread; may read from disk or network. A call during another's waits for it. The
   /// first outcome stays.
   Result<void> open();
-  /// The same on a worker: Opening at once.
+  /// The same on a worker: Opening at once. A failure is logged.
   static void openOn(WorkerPool& workers, std::shared_ptr<TileProvider> provider);
 
   /// One tile in colourLayout or heightLayout. Blocking; on a worker. Errors: not Ready; what cannot be read;

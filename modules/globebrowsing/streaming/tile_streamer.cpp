@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "globebrowsing/streaming/job_queue.h"
+#include "host/api/log.h"
 
 namespace meridian::globebrowsing {
 
@@ -127,7 +128,11 @@ void TileStreamer::take(QueuedJob& finished) {
   } else {
     entry.error = std::make_shared<const Error>(std::move(finished.result.error()));
     entry.bytes += bytesOf(*entry.error);
-    lastErrors_[entry.key.stream] = entry.error;
+    const auto [last, isFirst] = lastErrors_.insert_or_assign(entry.key.stream, entry.error);
+    if (isFirst) {
+      // A damaged file fails in many tiles: one message is enough.
+      log::error("{}; more of this layer's tiles may be missing", last->second->message());
+    }
     ++statistics_->tiles.failed;
   }
   bytes_ += entry.bytes;

@@ -226,11 +226,53 @@ TEST_F(CommandLine, ARecordingIsPlayedToItsEnd) {
 
 TEST_F(CommandLine, AnInterruptedRunClosesItsOutput) {
   emptyScene();
-  const Outcome outcome = run(
-      "empty.asset --headless --size 64x64 --frames 1000000 --output video.mkv --stats stats.json", "timeout -s INT 1");
-  EXPECT_EQ(outcome.code, 124) << outcome.errors;  // timeout's own code: it had to interrupt
+  // Interrupts what it is told to run once that has written some pictures, however long it takes to start.
+  write("interrupting.sh", R"(
+    "$@" &
+    while [ ! -e pictures/frame_000003.png ] && kill -0 $!; do sleep 0.05; done
+    kill -TERM $!
+    wait $!
+  )");
+  const Outcome outcome =
+      run("empty.asset --headless --size 64x64 --frames 1000000 --output pictures --stats stats.json",
+          "sh interrupting.sh");
+  EXPECT_EQ(outcome.code, 1) << outcome.errors;
   EXPECT_THAT(outcome.errors, HasSubstr("interrupted"));
   EXPECT_GT(nlohmann::json::parse(readFile(in("stats.json")))["frames"], 1);
+}
+
+TEST_F(CommandLine, AFolderIsNoAsset) {
+  fs::create_directories(in("scene"));
+  const Outcome outcome = run("scene --headless --size 8x8");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("this is a folder"));
+}
+
+TEST_F(CommandLine, SaysWhichRasterCannotBeUsed) {
+  write("text.tif", "this is no raster");
+  fs::create_directories(in("folder.tif"));
+  for (const char* file : {"missing.tif", "folder.tif", "text.tif"}) {
+    write("globe.asset", std::string(R"(
+      local globe = { Identifier = "Globe", Renderable = { Type = "RenderableGlobe", Radii = { 6e6, 6e6, 6e6 },
+        Layers = { ColorLayers = { { Identifier = "Broken", FilePath = ")") +
+                             file + R"(", Enabled = true } } } } }
+      asset.onInitialize(function() openspace.addSceneGraphNode(globe) end)
+    )");
+    if (run("--validate globe.asset").out.find("globes 1") == std::string::npos) {
+      GTEST_SKIP() << "built without the module that brings globes";
+    }
+    const Outcome outcome = run("globe.asset --headless --size 64x64 --settle 30 --output picture.png");
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    EXPECT_TRUE(fs::exists(in("picture.png"))) << "everything else keeps working";
+    const std::size_t first = outcome.errors.find(file);
+    ASSERT_NE(first, std::string::npos) << outcome.errors;
+    EXPECT_THAT(outcome.errors, HasSubstr("error"));
+  }
+  EXPECT_THAT(run("--validate globe.asset").errors, Not(HasSubstr("not usable"))) << "it is not read";
+  fs::remove(in("text.tif"));
+  const Outcome checked = run("--validate globe.asset");
+  EXPECT_THAT(checked.out, HasSubstr("layers 1 usable 0"));
+  EXPECT_THAT(checked.errors, HasSubstr("text.tif"));
 }
 
 TEST_F(CommandLine, AnUnwritableCacheOnlyWarns) {

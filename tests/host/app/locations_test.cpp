@@ -2,9 +2,11 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace meridian::app {
 namespace {
@@ -88,6 +90,26 @@ TEST(Locations, WithoutACacheFolderTheTemporaryOneServes) {
   ASSERT_TRUE(paths) << paths.error().message();
   EXPECT_EQ(paths->cache, folder->path() / "cache");
   EXPECT_TRUE(fs::is_directory(paths->sync));
+}
+
+TEST(Locations, PreparedDataOfACacheThatCanOnlyBeReadAreSeen) {
+  if (geteuid() == 0) {
+    GTEST_SKIP() << "root may write everywhere";
+  }
+  const auto folder = TemporaryFolder::create();
+  ASSERT_TRUE(folder);
+  const fs::path cache = folder->path() / "meridian";
+  fs::create_directories(cache / "data");
+  std::ofstream(cache / "data/earth.tif") << "earth";
+  fs::permissions(cache, fs::perms::owner_read | fs::perms::owner_exec);
+  const Environment environment("XDG_CACHE_HOME", folder->path().string());
+  const auto temporary = TemporaryFolder::create();
+  ASSERT_TRUE(temporary);
+  const auto paths = findPaths(temporary->path());
+  fs::permissions(cache, fs::perms::owner_all);
+  ASSERT_TRUE(paths) << paths.error().message();
+  EXPECT_EQ(paths->cache, temporary->path() / "cache");
+  EXPECT_EQ(fs::file_size(paths->cache / "data/earth.tif"), 5U);
 }
 
 }  // namespace

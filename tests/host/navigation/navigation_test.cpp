@@ -190,6 +190,17 @@ TEST(OrbitNavigator, NeverGoesBelowTheTerrain) {
   EXPECT_NEAR(world.navigator.height(), world.navigator.minimumClearance.get(), 1e-6);
 }
 
+TEST(OrbitNavigator, TellsWhetherItHadToLiftTheCamera) {
+  World world;
+  world.goTo({{0.2, 0.3, terrain - 800.0}, 0.0, -1.0, 0.0});
+  EXPECT_TRUE(world.navigator.keepClear());
+  EXPECT_NEAR(world.navigator.height(), world.navigator.minimumClearance.get(), 1e-6);
+  EXPECT_FALSE(world.navigator.keepClear()) << "rounding is no motion: what waits for it would wait for ever";
+  world.goTo({{0.2, 0.3, terrain + 800.0}, 0.0, -1.0, 0.0});
+  EXPECT_FALSE(world.navigator.keepClear());
+  EXPECT_NEAR(world.navigator.height(), 800.0, 1e-6);
+}
+
 TEST(OrbitNavigator, InertiaDiesOutAndAltogetherMovesWhatWasDragged) {
   World fast;
   World slow;
