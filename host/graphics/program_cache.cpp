@@ -295,7 +295,7 @@ GLuint ProgramCache::ready(const ProgramHandle& handle) const {
   return handle.entry_->program;
 }
 
-Result<ProgramHandle> ProgramCache::buildNow(ProgramDescription description) {
+Result<ProgramHandle> ProgramCache::buildNow(const ProgramDescription& description) {
   Implementation& self = *implementation_;
   if (ProgramHandle known = find(description.key)) {
     ++self.statistics.programs.cached;

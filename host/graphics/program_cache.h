@@ -70,7 +70,7 @@ class ProgramCache {
 
   /// Builds at once, on the calling thread and the first context, with its warm-up draw: for the few tiny programs that
   /// the first frame needs. When called between frames begun and ended it counts as a frame that waited.
-  [[nodiscard]] Result<ProgramHandle> buildNow(ProgramDescription description);
+  [[nodiscard]] Result<ProgramHandle> buildNow(const ProgramDescription& description);
   /// Waits until nothing is being built: for tests and for pictures that are written. Counts as buildNow does.
   void waitAll();
 

@@ -1,5 +1,7 @@
 #include "host/ui/user_interface.h"
 
+#include <algorithm>
+
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <epoxy/gl.h>
@@ -73,7 +75,22 @@ class ImGuiInterface final : public UserInterface {
         panel->build(builder_);
       }
       top += ImGui::GetWindowHeight() + margin;
+      keepOnScreen(screen);
       ImGui::End();
+    }
+  }
+
+  /// A panel grows to the right and down when a tree in it is opened: what it holds would end outside the window.
+  static void keepOnScreen(const ImVec2& screen) {
+    if (!(screen.x > 0.0F) || !(screen.y > 0.0F)) {
+      return;  // minimised
+    }
+    const ImVec2 size = ImGui::GetWindowSize();
+    const ImVec2 position = ImGui::GetWindowPos();
+    const ImVec2 kept{std::min(position.x, std::max(margin, screen.x - margin - size.x)),
+                      std::min(position.y, std::max(margin, screen.y - margin - size.y))};
+    if (kept.x != position.x || kept.y != position.y) {
+      ImGui::SetWindowPos(kept);
     }
   }
 
