@@ -26,9 +26,6 @@ fs::path withExtension(const fs::path& path) {
   if (path.extension() == ".asset" || (path.has_extension() && !fs::is_regular_file(extended, ignored))) {
     return path;
   }
-  if (fs::is_directory(path, ignored) && !fs::exists(extended, ignored)) {
-    return path;  // for the message: a user who names a folder should not hear of a file that nobody named
-  }
   return extended;
 }
 

@@ -51,7 +51,11 @@ struct AssetLoader::Private {
         return graph.resolve(fs::absolute(file, error).string(), nullptr);
       }
     }
-    return graph.resolve(path, nullptr);
+    Result<fs::path> required = graph.resolve(path, nullptr);
+    if (fs::is_directory(path, error) && !(required && fs::is_regular_file(*required, error))) {
+      return failure("this is a folder, not an asset", std::string(path), "name an .asset file in it");
+    }
+    return required;
   }
 };
 

@@ -46,6 +46,8 @@ PathTokens::PathTokens(const Paths& paths) {
   set("USER_ASSETS", paths.data / "user" / "assets");
   set("LOGS", paths.temporary / "logs");
   set("GLOBEBROWSING", paths.data / "globebrowsing");
+  // May lie elsewhere: a link to what was prepared in a cache that cannot be written.
+  allowReading(paths.cache / "data");
 }
 
 void PathTokens::set(std::string_view name, const fs::path& folder) {
