@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include <unistd.h>
+
 #include "globebrowsing/providers/provider_registry.h"
 #include "globebrowsing/tiling/geodetic_tiling.h"
 
@@ -25,7 +27,8 @@ inline GeodeticTiling earthTiling() {
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const std::string& name)
-      : path_(std::filesystem::temp_directory_path() / ("meridian-" + name + "-" + std::to_string(std::rand()))) {
+      : path_(std::filesystem::temp_directory_path() /
+              ("meridian-" + name + "-" + std::to_string(getpid()) + "-" + std::to_string(std::rand()))) {
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

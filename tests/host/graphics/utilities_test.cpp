@@ -1,6 +1,9 @@
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <thread>
+
+#include <unistd.h>
 
 #include "graphics_fixture.h"
 #include "host/api/module.h"
@@ -165,7 +168,8 @@ class ShaderCacheFolder : public ::testing::Test {
   }
 
   static constexpr const char* variable = "MESA_SHADER_CACHE_DIR";
-  std::filesystem::path folder_ = std::filesystem::path(MERIDIAN_TEST_FOLDER) / "cache_folder";
+  std::filesystem::path folder_ =
+      std::filesystem::path(MERIDIAN_TEST_FOLDER) / ("cache_folder_" + std::to_string(getpid()));
   std::string before_;
 };
 
