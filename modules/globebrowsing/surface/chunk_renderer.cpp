@@ -1,6 +1,7 @@
 #include "globebrowsing/surface/chunk_renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <array>
-#include <compare>
 #include <span>
-#include <string>
 
 #include "globebrowsing/chunks/selection.h"
 #include "globebrowsing/gpu/globe_tiles.h"

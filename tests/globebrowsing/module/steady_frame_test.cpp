@@ -1,49 +1,7 @@
-#include <cstdlib>
-#include <new>
+#include <string>
 
 #include "globe_fixture.h"
-
-namespace {
-/// Of the thread that draws: the driver's threads and the workers are their own business.
-thread_local bool counting = false;
-thread_local std::size_t allocations = 0;
-
-void* counted(std::size_t size, std::size_t alignment) {
-  allocations += counting ? 1 : 0;
-  void* memory = alignment > alignof(std::max_align_t)
-                     ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
-                     : std::malloc(size == 0 ? 1 : size);
-  if (memory == nullptr) {
-    throw std::bad_alloc();
-  }
-  return memory;
-}
-}  // namespace
-
-// Not inlined: at some levels of optimisation GCC sees malloc or free at only one side of a pair and warns.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  return counted(size, 0);
-}
-// The address sanitizer's own would not match our delete; elsewhere the standard library's calls the one above.
-[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t& /*tag*/) noexcept {
-  allocations += counting ? 1 : 0;
-  return std::malloc(size == 0 ? 1 : size);
-}
-[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-  return counted(size, static_cast<std::size_t>(alignment));
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
+#include "support/allocation_count.h"
 
 namespace meridian::globebrowsing {
 namespace {
@@ -56,17 +14,16 @@ class SteadyFrameTest : public GlobeTest {
     graphics_->beginFrame();
     target_->bind();
     target_->clear({0.0F, 0.0F, 0.0F, 1.0F});
-    allocations = 0;
-    counting = true;
+    const std::size_t before = allocationsOfThisThread();
     for (const auto& [name, renderable] : host_->renderables) {
       renderable->update(context);
     }
     for (const auto& [name, renderable] : host_->renderables) {
       renderable->draw(context, 0);
     }
-    counting = false;
+    const std::size_t after = allocationsOfThisThread();
     graphics_->endFrame();
-    return allocations;
+    return after - before;
   }
 };
 
@@ -85,11 +42,9 @@ TEST_F(SteadyFrameTest, AllocatesNothing) {
             {"NightLayers", listOf({fileLayer("N", colours)})},
             {"Overlays", listOf({solidLayer("O", {1, 1, 0}, {{"Opacity", 0.1}})})}},
            {{"PerformShading", true}, {"UseAccurateNormals", true}});
-  counting = true;
-  allocations = 0;
+  const std::size_t before = allocationsOfThisThread();
   { const std::string probe(100, 'x'); }
-  counting = false;
-  ASSERT_GE(allocations, 1U) << "the count works";
+  ASSERT_GT(allocationsOfThisThread(), before) << "the count works";
   for (const double distance : {2e7, 7e6, 6.45e6}) {
     look(0.5, 0.7, distance);
     ASSERT_TRUE(settle());
