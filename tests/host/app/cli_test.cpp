@@ -57,10 +57,12 @@ class CommandLine : public ::testing::Test {
     )");
   }
 
-  /// `arguments` as typed in a shell; without any display. `prefix`: environment and such.
+  /// `arguments` as typed in a shell; without any display. `prefix`: environment and such. In the foreground, because
+  /// otherwise `timeout` passes a signal on twice, and the second kills at once.
   Outcome run(const std::string& arguments, const std::string& prefix = "") const {
     const std::string command = "cd '" + folder_.string() + "' && env -u DISPLAY -u WAYLAND_DISPLAY " + prefix +
-                                " timeout 60 '" MERIDIAN_PROGRAM "' " + arguments + " >out.txt 2>errors.txt";
+                                " timeout --foreground 60 '" MERIDIAN_PROGRAM "' " + arguments +
+                                " >out.txt 2>errors.txt";
     const int status = std::system(command.c_str());
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     return {code, readFile(in("out.txt")), readFile(in("errors.txt"))};
