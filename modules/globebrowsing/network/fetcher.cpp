@@ -1,0 +1,1 @@
+#include "globebrowsing/network/fetcher.h"
