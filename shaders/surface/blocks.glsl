@@ -16,4 +16,5 @@ layout(std140, binding = 1) uniform ChunkBlock {
     float level;
     float normalScale;      // normal offset = (texel * 255 - 128) / 127 * this
     float flare;            // metres: how far a skirt's foot stands out
+    float lift;             // metres: by how much all vertices are raised
 } chunk;

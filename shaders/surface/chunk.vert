@@ -16,7 +16,7 @@ void main() {
     vec2 uv = place.xy / 32.0;
     vec3 north = mix(chunk.corners[0].xyz, chunk.corners[1].xyz, uv.x);
     vec3 south = mix(chunk.corners[2].xyz, chunk.corners[3].xyz, uv.x);
-    float height = offsetAndHeight.w - place.z * chunk.skirt;
+    float height = offsetAndHeight.w + chunk.lift - place.z * chunk.skirt;
     vec3 position = mix(north, south, uv.y) + offsetAndHeight.xyz + height * ellipsoidNormal;
     // A parallel bends along the surface, too: beside a denser neighbour a gap can open that is seen from straight above,
     // so the skirt's foot stands out under the neighbour.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <optional>
 #include <vector>
 
@@ -39,31 +38,38 @@ std::optional<glm::dvec2> onScreen(const View& view, const glm::dvec3& position)
 /// The largest distance on screen, along the vertical, between the chunk's triangles and the nodes of a grid four times
 /// denser. (Along the surface triangles shift nothing but texels, near the poles by as much again.)
 double errorOf(const SelectedChunk& chunk, const ChunkSurface& surface, const Tiling& tiling, const View& view) {
-  const int segments = chunk_grid::segmentsAt(chunk.step);
-  const int fine = std::min(4 * segments, ChunkSurface::nodes - 1);
-  const int stride = fine / segments;
-  const auto node = [&](int column, int row) {
+  const int rows = chunk_grid::segmentsAt(chunk.step);
+  const int fine = std::min(4 * rows, ChunkSurface::nodes - 1);
+  const int down = fine / rows;
+  const int across = fine / chunk_grid::columnsAt(chunk.step, surface.columns());
+  const auto placeAt = [&](int column, int row) {
     const glm::dvec2 uv(static_cast<double>(column) / fine, static_cast<double>(row) / fine);
     GeodeticPosition place = tiling.geodetic(chunk.index, uv);
     place.height = surface.heightAt(uv);
+    return place;
+  };
+  const auto exactAt = [&](int column, int row) { return tiling.ellipsoid().cartesian(placeAt(column, row)); };
+  const auto drawnAt = [&](int column, int row) {
+    GeodeticPosition place = placeAt(column, row);
+    place.height += surface.lift(chunk.step);
     return tiling.ellipsoid().cartesian(place);
   };
   double largest = 0.0;
-  for (int row = 0; row < fine; row += stride) {
-    for (int column = 0; column < fine; column += stride) {
-      const glm::dvec3 nw = node(column, row);
-      const glm::dvec3 ne = node(column + stride, row);
-      const glm::dvec3 sw = node(column, row + stride);
-      const glm::dvec3 se = node(column + stride, row + stride);
-      for (int j = 0; j <= stride; ++j) {
-        for (int i = 0; i <= stride; ++i) {
-          const double a = static_cast<double>(i) / stride;
-          const double b = static_cast<double>(j) / stride;
+  for (int row = 0; row < fine; row += down) {
+    for (int column = 0; column < fine; column += across) {
+      const glm::dvec3 nw = drawnAt(column, row);
+      const glm::dvec3 ne = drawnAt(column + across, row);
+      const glm::dvec3 sw = drawnAt(column, row + down);
+      const glm::dvec3 se = drawnAt(column + across, row + down);
+      for (int j = 0; j <= down; ++j) {
+        for (int i = 0; i <= across; ++i) {
+          const double a = static_cast<double>(i) / across;
+          const double b = static_cast<double>(j) / down;
           const glm::dvec3 drawn = nw + (a <= b ? (sw - nw) * b + (se - sw) * a : (ne - nw) * a + (se - ne) * b);
           const GeodeticPosition place = tiling.geodetic(
               chunk.index, {static_cast<double>(column + i) / fine, static_cast<double>(row + j) / fine});
           const glm::dvec3 vertical = tiling.ellipsoid().normal(place.latitude, place.longitude);
-          const glm::dvec3 exact = drawn + vertical * glm::dot(node(column + i, row + j) - drawn, vertical);
+          const glm::dvec3 exact = drawn + vertical * glm::dot(exactAt(column + i, row + j) - drawn, vertical);
           const bool faces = glm::dot(view.cameraPosition - exact, vertical) > 0.0;
           const auto from = onScreen(view, drawn);
           const auto to = onScreen(view, exact);
@@ -132,11 +138,13 @@ SurfaceFigures measureSurface(SettledGlobe& globe, glm::ivec2 size) {
     if (chunk.views == 0) {
       continue;
     }
-    const auto segments = static_cast<std::size_t>(chunk_grid::segmentsAt(chunk.step));
     ++figures.chunks;
-    figures.triangles += 2 * segments * segments;
-    figures.skirtTriangles += 2 * segments * static_cast<std::size_t>(std::popcount(chunk.skirtEdges));
     if (const ChunkSurface* surface = globe.surface().tiles().surfaces().find(chunk.index)) {
+      const auto triangles = [&](unsigned edges) {
+        return chunk_grid::indices(chunk.step, surface->columns(), edges).size() / 3;
+      };
+      figures.triangles += triangles(0);
+      figures.skirtTriangles += triangles(chunk.skirtEdges) - triangles(0);
       figures.errorPixels = std::max(figures.errorPixels, errorOf(chunk, *surface, globe.surface().tiling(), view));
     }
   }

@@ -13,6 +13,10 @@ std::uint8_t bitOf(Edge edge) {
   return static_cast<std::uint8_t>(1U << static_cast<unsigned>(edge));
 }
 
+bool touchesPole(const Tiling& tiling, const TileIndex& index) {
+  return !tiling.neighbour(index, Edge::North) || !tiling.neighbour(index, Edge::South);
+}
+
 }  // namespace
 
 SkirtFitter::Slot& SkirtFitter::slotOf(const TileIndex& index) {
@@ -83,7 +87,9 @@ void SkirtFitter::fit(const Tiling& tiling, NodePool& pool, const TileResidency&
         node.hasNeighbour[edge] = neighbour.has_value();
         node.neighbours[edge] = neighbour ? neighbour->index : TileIndex{};
         node.neighbourEdges[edge] = neighbour ? neighbour->edge : Edge::West;
-        node.sameEdge[edge] = neighbour && std::abs(neighbour->scale) == 1.0;
+        // A tile that tapers to a pole may have fewer vertices along its other edge (chunk_grid::Columns).
+        node.sameEdge[edge] = neighbour && std::abs(neighbour->scale) == 1.0 &&
+                              touchesPole(tiling, node.index) == touchesPole(tiling, neighbour->index);
       }
       node.hasNeighbours = true;
     }

@@ -22,9 +22,9 @@ namespace meridian::globebrowsing {
 /// pixel (settings.maximumErrorPixels) at the chunk's distance covers rounding and blending of heights. Where neither's
 /// edge holds the other's (rows of fewer columns beside deeper tiles) the greatest error drawn below the neighbour
 /// stands for those beyond the edge. Where both are of one level and density, and the whole edge is shared (not
-/// where rows of fewer columns begin), they draw the very same vertices along it, and where nothing is drawn beyond it
-/// nothing can gape: such edges get no skirt. So T-junctions of any difference in level and density are closed, without
-/// looking at the neighbour's vertices.
+/// where rows of fewer columns begin, nor where a tile that touches a pole ends), they draw the very same vertices
+/// along it, and where nothing is drawn beyond it nothing can gape: such edges get no skirt. So T-junctions of any
+/// difference in level and density are closed, without looking at the neighbour's vertices.
 class SkirtFitter {
  public:
   /// Sets every chunk's skirt; `numbers` are the chunks' nodes, in the same order. `metresPerPixel` is at a metre's

@@ -29,7 +29,9 @@ struct ChunkBlock {
   float level = 0.0F;
   float normalScale = 0.0F;  ///< normal offset = (texel * 255 - 128) / 127 * this
   float flare = 0.0F;        ///< metres: how far a skirt's foot stands out
+  float lift = 0.0F;         ///< metres: by how much all vertices are raised
+  std::array<float, 3> padding{};
 };
-static_assert(sizeof(ChunkBlock) == 144);
+static_assert(sizeof(ChunkBlock) == 160);
 
 }  // namespace meridian::globebrowsing

@@ -19,11 +19,13 @@ SurfacePool::SurfacePool(std::uint32_t capacity)
                                           static_cast<int>(capacity))) {
   std::vector<std::uint16_t> all;
   for (int step = 0; step < chunk_grid::steps; ++step) {
-    for (unsigned edges = 0; edges < chunk_grid::edgeSets; ++edges) {
-      const std::vector<std::uint16_t> indices = chunk_grid::indices(step, edges);
-      ranges_[static_cast<std::size_t>(step)][edges] = {all.size() * sizeof(std::uint16_t),
-                                                        static_cast<int>(indices.size())};
-      all.insert(all.end(), indices.begin(), indices.end());
+    for (const chunk_grid::Columns columns : chunk_grid::allColumns) {
+      for (unsigned edges = 0; edges < chunk_grid::edgeSets; ++edges) {
+        const std::vector<std::uint16_t> indices = chunk_grid::indices(step, columns, edges);
+        ranges_[static_cast<std::size_t>(step)][static_cast<std::size_t>(columns)][edges] = {
+            all.size() * sizeof(std::uint16_t), static_cast<int>(indices.size())};
+        all.insert(all.end(), indices.begin(), indices.end());
+      }
     }
   }
   elements_ = graphics::Buffer(static_cast<GLsizeiptr>(all.size() * sizeof(std::uint16_t)), all.data(), 0);
@@ -53,8 +55,8 @@ void SurfacePool::bind(GLuint normalUnit) const {
   glBindTextureUnit(normalUnit, normals_.id());
 }
 
-void SurfacePool::draw(std::uint32_t slot, int step, unsigned skirtEdges) const {
-  const Elements& range = ranges_[static_cast<std::size_t>(step)][skirtEdges];
+void SurfacePool::draw(std::uint32_t slot, int step, chunk_grid::Columns columns, unsigned skirtEdges) const {
+  const Elements& range = ranges_[static_cast<std::size_t>(step)][static_cast<std::size_t>(columns)][skirtEdges];
   // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL takes the offset as a pointer.
   const auto* first = reinterpret_cast<const void*>(range.firstByte);
   glDrawElementsBaseVertex(GL_TRIANGLES, range.count, GL_UNSIGNED_SHORT, first,

@@ -30,7 +30,7 @@ class SurfacePool {
   /// The vertex array and the element buffer of all densities.
   void bind(GLuint normalUnit) const;
   /// Draws the chunk in that slot with the vertex array bound; `step` 0..4, skirts on the edges of `skirtEdges`.
-  void draw(std::uint32_t slot, int step, unsigned skirtEdges) const;
+  void draw(std::uint32_t slot, int step, chunk_grid::Columns columns, unsigned skirtEdges) const;
 
   /// The vertex layout alone, for warm-up draws on another context.
   static void describeVertices(GLuint vertexArray, GLuint vertexBuffer);
@@ -47,7 +47,8 @@ class SurfacePool {
     std::size_t firstByte = 0;
     int count = 0;
   };
-  std::array<std::array<Elements, chunk_grid::edgeSets>, chunk_grid::steps> ranges_{};
+  using EdgeSets = std::array<Elements, chunk_grid::edgeSets>;
+  std::array<std::array<EdgeSets, chunk_grid::allColumns.size()>, chunk_grid::steps> ranges_{};
 };
 
 }  // namespace meridian::globebrowsing

@@ -42,16 +42,17 @@ Place place(int vertex) {
   return edgePlace;
 }
 
-std::vector<std::uint16_t> indices(int step, unsigned edges) {
-  const int stride = segments / segmentsAt(step);
+std::vector<std::uint16_t> indices(int step, Columns columns, unsigned edges) {
+  const int down = segments / segmentsAt(step);
+  const int across = segments / columnsAt(step, columns);
   std::vector<std::uint16_t> out;
-  out.reserve(static_cast<std::size_t>(gridIndexCount(step) + 4 * 6 * segmentsAt(step)));
-  for (int row = 0; row < segments; row += stride) {
-    for (int column = 0; column < segments; column += stride) {
+  out.reserve(static_cast<std::size_t>(gridIndexCount(step, columns) + 4 * 6 * segmentsAt(step)));
+  for (int row = 0; row < segments; row += down) {
+    for (int column = 0; column < segments; column += across) {
       const std::uint16_t northWest = gridVertex(column, row);
-      const std::uint16_t northEast = gridVertex(column + stride, row);
-      const std::uint16_t southWest = gridVertex(column, row + stride);
-      const std::uint16_t southEast = gridVertex(column + stride, row + stride);
+      const std::uint16_t northEast = gridVertex(column + across, row);
+      const std::uint16_t southWest = gridVertex(column, row + down);
+      const std::uint16_t southEast = gridVertex(column + across, row + down);
       out.insert(out.end(), {northWest, southWest, southEast, northWest, southEast, northEast});
     }
   }
@@ -61,6 +62,7 @@ std::vector<std::uint16_t> indices(int step, unsigned edges) {
     }
     // Going south along the west edge, the outside is to the right; likewise going west-to-east along the south one.
     const bool outsideOnRight = edge == 0 || edge == 3;
+    const int stride = edge < 2 ? down : across;
     for (int along = 0; along < segments; along += stride) {
       const int first = outsideOnRight ? along : along + stride;
       const int second = outsideOnRight ? along + stride : along;

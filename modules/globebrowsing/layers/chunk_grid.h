@@ -10,7 +10,8 @@ namespace meridian::globebrowsing {
 /// more the vertices of the west, east, north and south edge, in that order, each from its north or west end.
 ///
 /// A chunk draws with 2, 4, 8, 16 or 32 segments a side (step 0..4) by an index list that skips vertices, so density
-/// never touches vertex data. Cells are cut from their north-west to their south-east corner.
+/// never touches vertex data. One that tapers to a pole draws with half as many columns as rows: as many would be
+/// slivers. Cells are cut from their north-west to their south-east corner.
 namespace chunk_grid {
 
 inline constexpr int segments = 32;
@@ -20,9 +21,16 @@ inline constexpr int gridVertices = side * side;
 inline constexpr int skirtVertices = 4 * side;
 inline constexpr int vertexCount = gridVertices + skirtVertices;
 
+enum class Columns : std::uint8_t { Full, Half };
+inline constexpr std::array<Columns, 2> allColumns{Columns::Full, Columns::Half};
+
 /// Segments a side at that step: 2, 4, 8, 16, 32.
 [[nodiscard]] constexpr int segmentsAt(int step) {
   return 2 << step;
+}
+/// Segments along the north and the south edge.
+[[nodiscard]] constexpr int columnsAt(int step, Columns columns) {
+  return columns == Columns::Half ? segmentsAt(step) / 2 : segmentsAt(step);
 }
 
 /// The grid column and row of a vertex (of the edge below it, for a skirt vertex).
@@ -35,11 +43,11 @@ struct Place {
 
 /// Triangles, counter-clockwise seen from outside: first the grid's, then the skirts', which face away from the chunk.
 /// `edges`: bits 0..3 for the skirts of the west, east, north and south edge.
-[[nodiscard]] std::vector<std::uint16_t> indices(int step, unsigned edges);
+[[nodiscard]] std::vector<std::uint16_t> indices(int step, Columns columns, unsigned edges);
 inline constexpr unsigned edgeSets = 16;
 /// How many of the indices are the grid's.
-[[nodiscard]] constexpr int gridIndexCount(int step) {
-  return 6 * segmentsAt(step) * segmentsAt(step);
+[[nodiscard]] constexpr int gridIndexCount(int step, Columns columns) {
+  return 6 * segmentsAt(step) * columnsAt(step, columns);
 }
 
 }  // namespace chunk_grid

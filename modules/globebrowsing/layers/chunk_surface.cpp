@@ -64,7 +64,8 @@ ChunkSurface::ChunkSurface(const Tiling& tiling, const TileIndex& index, std::ve
   }
   corners_ = {tiling.position(index, {0.0, 0.0}), tiling.position(index, {1.0, 0.0}),
               tiling.position(index, {0.0, 1.0}), tiling.position(index, {1.0, 1.0})};
-  taper_ = taperOf(all);
+  setTaper(all);
+  setLifts(tiling, index);
   makeVertices(all);
   makeNormals(all);
   for (int step = 0; step < chunk_grid::steps; ++step) {
@@ -73,8 +74,8 @@ ChunkSurface::ChunkSurface(const Tiling& tiling, const TileIndex& index, std::ve
   }
 }
 
-double ChunkSurface::driftAt(const Nodes& all, int step) {
-  const int stride = (nodes - 1) / chunk_grid::segmentsAt(step);
+double ChunkSurface::driftAt(const Nodes& all, int step) const {
+  const int stride = (nodes - 1) / chunk_grid::columnsAt(step, columns_);
   double largest = 0.0;
   for (const int row : {0, nodes - 1}) {
     for (int column = 0; column < nodes - 1; column += stride) {
@@ -92,7 +93,7 @@ double ChunkSurface::driftAt(const Nodes& all, int step) {
   return largest;
 }
 
-double ChunkSurface::taperOf(const Nodes& all) {
+void ChunkSurface::setTaper(const Nodes& all) {
   const auto length = [&](int row) {
     double sum = 0.0;
     for (int column = 1; column < nodes; ++column) {
@@ -104,9 +105,31 @@ double ChunkSurface::taperOf(const Nodes& all) {
   const double south = length(nodes - 1);
   const double wider = std::max(north, south);
   if (wider < 1e-6 * length(nodes / 2)) {
-    return 0.0;
+    return;  // between two poles
   }
-  return north < south ? 1.0 - north / wider : south / wider - 1.0;
+  taper_ = north < south ? 1.0 - north / wider : south / wider - 1.0;
+  constexpr double toAPoint = 1.0 - 1e-6;
+  const double high = glm::distance(corners_[0], corners_[2]);
+  if (std::abs(taper_) > toAPoint && wider < 0.5 * high) {
+    columns_ = chunk_grid::Columns::Half;
+  }
+}
+
+void ChunkSurface::setLifts(const Tiling& tiling, const TileIndex& index) {
+  // A cell's edge is an arc of `angle`; it sags by angle^2 / 8 of the radius of curvature, and the cell's diagonal by
+  // twice that. Taken from the root and from the least radius there is, so that it is alike all over the level, and
+  // nowhere more than half of what is to be halved.
+  const auto normalAt = [&tiling](double v) {
+    const GeodeticPosition place = tiling.geodetic(TileIndex{}, {0.5, v});
+    return tiling.ellipsoid().normal(place.latitude, place.longitude);
+  };
+  const double half = std::acos(std::clamp(glm::dot(normalAt(0.0), normalAt(0.5)), -1.0, 1.0));
+  const double least = tiling.ellipsoid().minimumRadius();
+  const double radius = least * least / tiling.ellipsoid().maximumRadius();
+  for (int step = 0; step < chunk_grid::steps; ++step) {
+    const double angle = std::ldexp(2.0 * half / chunk_grid::segmentsAt(step), -int{index.level});
+    lifts_[static_cast<std::size_t>(step)] = radius * angle * angle / 8.0;
+  }
 }
 
 float ChunkSurface::height(int column, int row) const {
@@ -169,20 +192,27 @@ glm::dvec3 ChunkSurface::surfaceNormal(const Nodes& all, int column, int row) {
 }
 
 double ChunkSurface::errorAt(const Nodes& all, int step) const {
-  const int stride = (nodes - 1) / chunk_grid::segmentsAt(step);
+  const int down = (nodes - 1) / chunk_grid::segmentsAt(step);
+  const int across = (nodes - 1) / chunk_grid::columnsAt(step, columns_);
+  const auto vertex = [&](int column, int row) {
+    const std::size_t node = Nodes::at(column, row);
+    return all.positions[node] + all.normals[node] * lift(step);
+  };
   double largest = 0.0;
-  for (int row = 0; row < nodes - 1; row += stride) {
-    for (int column = 0; column < nodes - 1; column += stride) {
-      const glm::dvec3& northWest = all.positions[Nodes::at(column, row)];
-      const glm::dvec3& southEast = all.positions[Nodes::at(column + stride, row + stride)];
-      const glm::dvec3 west = all.positions[Nodes::at(column, row + stride)] - northWest;
-      const glm::dvec3 south = southEast - all.positions[Nodes::at(column, row + stride)];
-      const glm::dvec3 north = all.positions[Nodes::at(column + stride, row)] - northWest;
-      const glm::dvec3 east = southEast - all.positions[Nodes::at(column + stride, row)];
-      for (int j = 0; j <= stride; ++j) {
-        for (int i = 0; i <= stride; ++i) {
-          const double a = static_cast<double>(i) / stride;
-          const double b = static_cast<double>(j) / stride;
+  for (int row = 0; row < nodes - 1; row += down) {
+    for (int column = 0; column < nodes - 1; column += across) {
+      const glm::dvec3 northWest = vertex(column, row);
+      const glm::dvec3 southWest = vertex(column, row + down);
+      const glm::dvec3 northEast = vertex(column + across, row);
+      const glm::dvec3 southEast = vertex(column + across, row + down);
+      const glm::dvec3 west = southWest - northWest;
+      const glm::dvec3 south = southEast - southWest;
+      const glm::dvec3 north = northEast - northWest;
+      const glm::dvec3 east = southEast - northEast;
+      for (int j = 0; j <= down; ++j) {
+        for (int i = 0; i <= across; ++i) {
+          const double a = static_cast<double>(i) / across;
+          const double b = static_cast<double>(j) / down;
           const glm::dvec3 drawn = northWest + (a <= b ? west * b + south * a : north * a + east * b);
           const std::size_t node = Nodes::at(column + i, row + j);
           largest = std::max(largest, std::abs(glm::dot(all.positions[node] - drawn, all.normals[node])));

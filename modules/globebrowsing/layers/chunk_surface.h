@@ -43,6 +43,12 @@ class ChunkSurface final : public TileData {
   /// On the ellipsoid, model space: north-west, north-east, south-west, south-east.
   [[nodiscard]] const std::array<glm::dvec3, 4>& corners() const { return corners_; }
   [[nodiscard]] const HeightRange& heightRange() const { return range_; }
+  /// Half as many columns as rows for a tile that touches a pole and is at its other end at most half as wide as high.
+  [[nodiscard]] chunk_grid::Columns columns() const { return columns_; }
+  /// Metres by which vertices are raised when the tile is drawn at that step (0..4). Triangles cut under a curved
+  /// surface, by nothing at their corners and the most in the middle; raised by half of that they err half as much, to
+  /// both sides. The same for all tiles of a level, so that neighbours go on sharing their edges.
+  [[nodiscard]] double lift(int step) const { return lifts_[static_cast<std::size_t>(step)]; }
   /// Metres between the surface drawn at that step (0..4) and at every node: the largest, along the normal.
   [[nodiscard]] double error(int step) const { return errors_[static_cast<std::size_t>(step)]; }
   /// Metres between the north and south edges drawn at that step and through every node: the largest, along the surface
@@ -70,22 +76,25 @@ class ChunkSurface final : public TileData {
  private:
   struct Nodes;
   [[nodiscard]] float height(int column, int row) const;
+  void setLifts(const Tiling& tiling, const TileIndex& index);
   void makeVertices(const Nodes& all);
   void makeNormals(const Nodes& all);
-  [[nodiscard]] static double driftAt(const Nodes& all, int step);
-  [[nodiscard]] static double taperOf(const Nodes& all);
+  [[nodiscard]] double driftAt(const Nodes& all, int step) const;
+  void setTaper(const Nodes& all);
   [[nodiscard]] static glm::dvec3 surfaceNormal(const Nodes& all, int column, int row);
   [[nodiscard]] double errorAt(const Nodes& all, int step) const;
 
   std::vector<float> heights_;
   std::array<glm::dvec3, 4> corners_{};
   HeightRange range_;
+  std::array<double, chunk_grid::steps> lifts_{};
   std::array<double, chunk_grid::steps> errors_{};
   std::array<double, chunk_grid::steps> drifts_{};
   std::vector<SurfaceVertex> vertices_;
   std::vector<NormalOffset> normalOffsets_;
   double normalScale_ = 0.0;
   double taper_ = 0.0;
+  chunk_grid::Columns columns_ = chunk_grid::Columns::Full;
   NormalCone cone_;
 };
 

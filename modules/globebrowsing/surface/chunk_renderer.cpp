@@ -162,10 +162,11 @@ void ChunkRenderer::drawChunk(const SelectedChunk& chunk, const Job& job, GlobeT
   block.layers.w = static_cast<float>(*slot);
   block.skirt = static_cast<float>(chunk.skirt);
   block.flare = static_cast<float>(skirtFlare * surface->drift(chunk.step));
+  block.lift = static_cast<float>(surface->lift(chunk.step));
   block.level = static_cast<float>(chunk.index.level);
   block.normalScale = static_cast<float>(surface->normalScale());
   uniforms_.writeAndBind(chunkBlock, block);
-  tiles.surfaces().pool().draw(*slot, chunk.step, job.skirts ? chunk.skirtEdges : 0U);
+  tiles.surfaces().pool().draw(*slot, chunk.step, surface->columns(), job.skirts ? chunk.skirtEdges : 0U);
 }
 
 }  // namespace meridian::globebrowsing

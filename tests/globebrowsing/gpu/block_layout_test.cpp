@@ -52,7 +52,7 @@ class BlockLayoutTest : public GpuTest {
 };
 
 TEST_F(BlockLayoutTest, ChunkBlocksLieWhereTheDriverReadsThem) {
-  compile("#include \"surface/blocks.glsl\"\n", "view.opacity + chunk.level");
+  compile("#include \"surface/blocks.glsl\"\n", "view.opacity + chunk.lift");
   ASSERT_FALSE(HasFatalFailure());
   EXPECT_EQ(offset("ViewBlock.clipFromRelative"), offsetof(ViewBlock, clipFromRelative));
   EXPECT_EQ(offset("ViewBlock.lightDirection"), offsetof(ViewBlock, lightDirection));
@@ -68,6 +68,7 @@ TEST_F(BlockLayoutTest, ChunkBlocksLieWhereTheDriverReadsThem) {
   EXPECT_EQ(offset("ChunkBlock.layers"), offsetof(ChunkBlock, layers));
   EXPECT_EQ(offset("ChunkBlock.skirt"), offsetof(ChunkBlock, skirt));
   EXPECT_EQ(offset("ChunkBlock.level"), offsetof(ChunkBlock, level));
+  EXPECT_EQ(offset("ChunkBlock.lift"), offsetof(ChunkBlock, lift));
   EXPECT_LE(blockSize("ChunkBlock"), static_cast<int>(sizeof(ChunkBlock)));
 }
 
