@@ -79,6 +79,11 @@ Result<void> SceneRenderer::draw(const Moment& moment, const navigation::Camera&
   }
   takeNewRenderables();
 
+  timer_.begin();
+  // A software renderer starts on what was submitted when it is told to: it clears while scenes are selected.
+  target_.clear({0.0F, 0.0F, 0.0F, 1.0F});
+  glFlush();
+
   FrameContext frame;
   frame.time = moment.time;
   frame.deltaSeconds = moment.deltaSeconds;
@@ -97,9 +102,7 @@ Result<void> SceneRenderer::draw(const Moment& moment, const navigation::Camera&
     order_.push_back(&item);
   }
 
-  timer_.begin();
   target_.bind();
-  target_.clear({0.0F, 0.0F, 0.0F, 1.0F});
   drawItems(frame);
   timer_.end();
   return {};

@@ -1,4 +1,5 @@
 #version 450 core
+#extension GL_ARB_shader_draw_parameters : require
 #{defines}
 
 #include "surface/blocks.glsl"
@@ -7,24 +8,39 @@ layout(location = 0) in vec4 offsetAndHeight;
 layout(location = 1) in vec3 ellipsoidNormal;
 layout(location = 2) in vec4 place;  // column and row of the 32 x 32 grid, 1 at the foot of a skirt
 
-layout(location = 0) out vec2 unitSquare;
-#if SHADING
-layout(location = 1) out vec3 vertical;
-#endif
+#define VARYING out
+#include "surface/varyings.glsl"
 
 void main() {
     vec2 uv = place.xy / 32.0;
-    vec3 north = mix(chunk.corners[0].xyz, chunk.corners[1].xyz, uv.x);
-    vec3 south = mix(chunk.corners[2].xyz, chunk.corners[3].xyz, uv.x);
-    float height = offsetAndHeight.w + chunk.lift - place.z * chunk.skirt;
-    vec3 position = mix(north, south, uv.y) + offsetAndHeight.xyz + height * ellipsoidNormal;
+    vec3 northWest = chunks[gl_DrawIDARB].corners[0].xyz;
+    vec3 northEast = chunks[gl_DrawIDARB].corners[1].xyz;
+    vec3 southWest = chunks[gl_DrawIDARB].corners[2].xyz;
+    vec3 southEast = chunks[gl_DrawIDARB].corners[3].xyz;
+    vec3 patchPoint = mix(mix(northWest, northEast, uv.x), mix(southWest, southEast, uv.x), uv.y);
+    float height = offsetAndHeight.w + chunks[gl_DrawIDARB].lift - place.z * chunks[gl_DrawIDARB].skirt;
+    vec3 position = patchPoint + offsetAndHeight.xyz + height * ellipsoidNormal;
     // A parallel bends along the surface, too: beside a denser neighbour a gap can open that is seen from straight above,
     // so the skirt's foot stands out under the neighbour.
-    vec3 middle = 0.25 * (chunk.corners[0].xyz + chunk.corners[1].xyz + chunk.corners[2].xyz + chunk.corners[3].xyz);
-    position += place.z * chunk.flare * normalize(position - middle);
+    vec3 middle = 0.25 * (northWest + northEast + southWest + southEast);
+    position += place.z * chunks[gl_DrawIDARB].flare * normalize(position - middle);
     gl_Position = view.clipFromRelative * vec4(position, 1.0);
-    unitSquare = uv;
+
+    vec4 base = chunks[gl_DrawIDARB].base;
+    vec4 normals = chunks[gl_DrawIDARB].normals;
+    baseAndNormals = vec4(base.xy + base.zw * uv, normals.xy + normals.zw * uv);
+    layers = chunks[gl_DrawIDARB].layers;
 #if SHADING
     vertical = ellipsoidNormal;
+    normalScale = chunks[gl_DrawIDARB].normalScale;
+#endif
+#if NIGHT || OVERLAY
+    vec4 night = chunks[gl_DrawIDARB].night;
+    vec4 overlay = chunks[gl_DrawIDARB].overlay;
+    nightAndOverlay = vec4(night.xy + night.zw * uv, overlay.xy + overlay.zw * uv);
+#endif
+#if EDGES
+    unitSquare = uv;
+    level = chunks[gl_DrawIDARB].level;
 #endif
 }

@@ -1,5 +1,6 @@
 #include "floor_draw.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -36,7 +37,7 @@ double fold(double tiles) {
 FloorDraw::FloorDraw(SettledGlobe& globe, glm::ivec2 size, const SurfaceFigures& figures)
     : globe_(globe), size_(size), vertexArray_(graphics::VertexArray::create()), night_(figures.mostlyNight) {
   makeGrid(figures);
-  makeBlocks();
+  makeBlocks(figures);
 }
 
 void FloorDraw::makeGrid(const SurfaceFigures& figures) {
@@ -80,12 +81,13 @@ void FloorDraw::makeGrid(const SurfaceFigures& figures) {
   }
 }
 
-void FloorDraw::makeBlocks() {
+void FloorDraw::makeBlocks(const SurfaceFigures& figures) {
   ViewBlock view;
   view.lightDirection = {0.0F, 0.6F, 0.8F};
   view.ambient = 0.05F;
   viewBlock_ = graphics::Buffer(sizeof(view), &view, 0);
-  ChunkBlock chunk;
+  ChunkBlock block;
+  ChunkParameters& chunk = block.chunks[0];
   // No corners: the vertices are in clip space already.
   chunk.corners.fill(glm::vec4(0.0F));
   const SelectedChunk& nearest = globe_.surface().selected().front();
@@ -97,8 +99,20 @@ void FloorDraw::makeBlocks() {
       chunk.layers[static_cast<int>(kind)] = static_cast<float>(placement->slot);
     }
   }
-  chunk.layers.w = static_cast<float>(globe_.surface().tiles().surfaces().slot(nearest.index).value_or(0));
-  chunkBlock_ = graphics::Buffer(sizeof(chunk), &chunk, 0);
+  constexpr double mostTexels = 4096.0;
+  const double normals = std::clamp(std::ceil(std::sqrt(static_cast<double>(figures.normals))), 1.0, mostTexels);
+  normals_ =
+      graphics::Texture::array2D(SurfacePool::normalFormat, static_cast<int>(normals), static_cast<int>(normals), 1);
+  const std::vector<std::uint8_t> flat(static_cast<std::size_t>(4.0 * normals * normals), 128);
+  glTextureSubImage3D(normals_.id(), 0, 0, 0, 0, static_cast<int>(normals), static_cast<int>(normals), 1, GL_RGBA,
+                      GL_UNSIGNED_BYTE, flat.data());
+  // All of it, or what a tile's unit square spans at the frame's density, if the pixels fold over several.
+  const double pixels = std::sqrt(static_cast<double>(figures.coveredPixels));
+  const double tiles = pixels * figures.texelsPerPixel / double{colourLayout.interior};
+  const auto share = static_cast<float>(1.0 / std::max(tiles, 1e-3));
+  chunk.normals = {0.0F, 0.0F, share, share};
+  chunk.layers.w = 0.0F;
+  chunkBlock_ = graphics::Buffer(sizeof(block), &block, 0);
 }
 
 double FloorDraw::frame() {
@@ -107,8 +121,9 @@ double FloorDraw::frame() {
   renderer.beginFrame();
   renderer.target().bind();
   renderer.target().clear({0.0F, 0.0F, 0.0F, 1.0F});
-  globe_.surface().renderer().bindForDrawing(globe_.surface().tiles(), night_);
+  globe_.surface().renderer().bindForDrawing(globe_.surface().tiles(), night_, false);
   glBindVertexArray(vertexArray_.id());
+  glBindTextureUnit(chunk_bindings::normalUnit, normals_.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, viewBlock_.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, 1, chunkBlock_.id());
   glDrawElements(GL_TRIANGLES, elementCount_, GL_UNSIGNED_INT, nullptr);

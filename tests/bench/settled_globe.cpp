@@ -83,8 +83,13 @@ Result<void> SettledGlobe::settle() {
     if (millisecondsSince(start) > 60000.0) {
       return failure("the view does not settle: " + renderer_->settled().reason);
     }
-  } while (!renderer_->settled().complete);
+  } while (!renderer_->settled().complete || isPrefetching());
   return {};
+}
+
+bool SettledGlobe::isPrefetching() const {
+  const auto& tiles = application_->statistics().tiles;
+  return tiles.requested > tiles.loaded + tiles.failed + tiles.cancelled;
 }
 
 double SettledGlobe::frame() {

@@ -35,6 +35,8 @@ class SettledGlobe {
 
  private:
   SettledGlobe() = default;
+  /// Whether tiles beside the picture are still under way: workers would be measured, too.
+  [[nodiscard]] bool isPrefetching() const;
 
   std::unique_ptr<graphics::Context> context_;
   std::unique_ptr<app::Application> application_;

@@ -143,6 +143,8 @@ SurfaceFigures measureSurface(SettledGlobe& globe, glm::ivec2 size) {
       const auto triangles = [&](unsigned edges) {
         return chunk_grid::indices(chunk.step, surface->columns(), edges).size() / 3;
       };
+      const auto nodes = static_cast<std::size_t>(NormalImage::nodesAt(normalLevel(*surface, chunk, view)));
+      figures.normals += nodes * nodes;
       figures.triangles += triangles(0);
       figures.skirtTriangles += triangles(chunk.skirtEdges) - triangles(0);
       figures.errorPixels = std::max(figures.errorPixels, errorOf(chunk, *surface, globe.surface().tiling(), view));

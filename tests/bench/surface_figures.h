@@ -13,6 +13,7 @@ struct SurfaceFigures {
   std::size_t skirtTriangles = 0;
   std::size_t coveredPixels = 0;
   double texelsPerPixel = 1.0;  ///< along a side, median over the picture
+  std::size_t normals = 0;      ///< texels of all chunks' normals, at the level that each is drawn with
   bool mostlyNight = false;     ///< whether more chunks are drawn with night layers than without
   double errorPixels = 0.0;     ///< greatest distance on screen from the surface drawn with a grid four times denser
 };

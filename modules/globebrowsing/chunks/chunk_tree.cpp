@@ -24,7 +24,7 @@ constexpr int finestStep = 4;
 /// for density, only its own tile gets it.)
 constexpr int splitStep(int level) {
   constexpr int firstOrdinaryLevel = 4;
-  return level < firstOrdinaryLevel ? 2 : 3;
+  return level < firstOrdinaryLevel ? 1 : 3;
 }
 /// A float holds 24 bits: a corner patch's edge times this is the error of a vertex along it.
 constexpr double floatPrecision = 0x1p-23;

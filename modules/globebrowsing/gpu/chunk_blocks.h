@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -20,10 +21,11 @@ struct ViewBlock {
 };
 static_assert(sizeof(ViewBlock) == 96);
 
-/// One chunk in one view; binding 1.
-struct ChunkBlock {
+/// One chunk in one view.
+struct ChunkParameters {
   std::array<glm::vec4, 4> corners{};     ///< north-west, north-east, south-west, south-east, relative to the eye
   std::array<glm::vec4, 3> composites{};  ///< base, night, overlay: texture coordinate = xy + zw * unit square
+  glm::vec4 normals{0.0F};                ///< of the normals' image: texture coordinate = xy + zw * unit square
   glm::vec4 layers{-1.0F};  ///< array layers of base, night and overlay composite and of the normals; below 0: none
   float skirt = 0.0F;
   float level = 0.0F;
@@ -32,6 +34,12 @@ struct ChunkBlock {
   float lift = 0.0F;         ///< metres: by how much all vertices are raised
   std::array<float, 3> padding{};
 };
-static_assert(sizeof(ChunkBlock) == 160);
+static_assert(sizeof(ChunkParameters) == 176);
+
+/// Those of one draw call; binding 1.
+struct ChunkBlock {
+  static constexpr std::size_t most = 64;
+  std::array<ChunkParameters, most> chunks{};
+};
 
 }  // namespace meridian::globebrowsing

@@ -105,12 +105,14 @@ double GlobeTiles::geometricError(const TileIndex& index, int step) const {
   }
   // From level to level curvature's part falls to a quarter, and so does relief's below the resolution of its data;
   // above it, relief is as rough at half the size and falls to a half.
-  double error = nearest.surface->error(step);
+  double curvature = nearest.surface->lift(step);
+  double relief = std::max(nearest.surface->error(step) - curvature, 0.0);
   for (std::optional<TileIndex> at = tiling_->parent(index);
        at && at->level >= nearest.level && nearest.level < index.level; at = tiling_->parent(*at)) {
-    error *= surfaces_.hasFinerHeights(*at) ? 0.5 : 0.25;
+    curvature *= 0.25;
+    relief *= surfaces_.hasFinerHeights(*at) ? 0.5 : 0.25;
   }
-  return error;
+  return curvature + relief;
 }
 
 double GlobeTiles::surfaceDrift(const TileIndex& index, int step) const {

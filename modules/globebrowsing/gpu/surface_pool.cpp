@@ -15,7 +15,7 @@ SurfacePool::SurfacePool(std::uint32_t capacity)
     : slots_(capacity),
       vertices_(slotBytes * static_cast<GLsizeiptr>(capacity), nullptr, GL_DYNAMIC_STORAGE_BIT),
       vertexArray_(graphics::VertexArray::create()),
-      normals_(graphics::Texture::array2D(normalFormat, ChunkSurface::nodes, ChunkSurface::nodes,
+      normals_(graphics::Texture::array2D(normalFormat, NormalImage::width, NormalImage::height,
                                           static_cast<int>(capacity))) {
   std::vector<std::uint16_t> all;
   for (int step = 0; step < chunk_grid::steps; ++step) {
@@ -46,8 +46,8 @@ void SurfacePool::describeVertices(GLuint vertexArray, GLuint vertexBuffer) {
 
 void SurfacePool::upload(std::uint32_t slot, const ChunkSurface& surface) const {
   vertices_.write(slotBytes * static_cast<GLsizeiptr>(slot), slotBytes, surface.vertices().data());
-  glTextureSubImage3D(normals_.id(), 0, 0, 0, static_cast<GLint>(slot), ChunkSurface::nodes, ChunkSurface::nodes, 1,
-                      GL_RGBA, GL_UNSIGNED_BYTE, surface.normalOffsets().data());
+  glTextureSubImage3D(normals_.id(), 0, 0, 0, static_cast<GLint>(slot), NormalImage::width, NormalImage::height, 1,
+                      GL_RGBA, GL_UNSIGNED_BYTE, surface.normals().texels().data());
 }
 
 void SurfacePool::bind(GLuint normalUnit) const {
@@ -55,12 +55,24 @@ void SurfacePool::bind(GLuint normalUnit) const {
   glBindTextureUnit(normalUnit, normals_.id());
 }
 
-void SurfacePool::draw(std::uint32_t slot, int step, chunk_grid::Columns columns, unsigned skirtEdges) const {
+void SurfacePool::Draws::clear() {
+  counts.clear();
+  firstElements.clear();
+  firstVertices.clear();
+}
+
+void SurfacePool::add(Draws& draws, std::uint32_t slot, int step, chunk_grid::Columns columns,
+                      unsigned skirtEdges) const {
   const Elements& range = ranges_[static_cast<std::size_t>(step)][static_cast<std::size_t>(columns)][skirtEdges];
+  draws.counts.push_back(range.count);
   // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL takes the offset as a pointer.
-  const auto* first = reinterpret_cast<const void*>(range.firstByte);
-  glDrawElementsBaseVertex(GL_TRIANGLES, range.count, GL_UNSIGNED_SHORT, first,
-                           static_cast<GLint>(slot) * chunk_grid::vertexCount);
+  draws.firstElements.push_back(reinterpret_cast<const void*>(range.firstByte));
+  draws.firstVertices.push_back(static_cast<GLint>(slot) * chunk_grid::vertexCount);
+}
+
+void SurfacePool::draw(const Draws& draws) {
+  glMultiDrawElementsBaseVertex(GL_TRIANGLES, draws.counts.data(), GL_UNSIGNED_SHORT, draws.firstElements.data(),
+                                static_cast<GLsizei>(draws.size()), draws.firstVertices.data());
 }
 
 }  // namespace meridian::globebrowsing

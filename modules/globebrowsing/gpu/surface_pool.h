@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "globebrowsing/gpu/slot_pool.h"
 #include "globebrowsing/layers/chunk_surface.h"
@@ -16,11 +17,22 @@ namespace meridian::globebrowsing {
 /// Render thread only.
 class SurfacePool {
  public:
+  /// What one call draws. (On a software renderer each call with uniforms of its own copies some tens of kilobytes of
+  /// state.)
+  struct Draws {
+    std::vector<GLsizei> counts;
+    std::vector<const void*> firstElements;  ///< as OpenGL wants offsets into the element buffer
+    std::vector<GLint> firstVertices;
+
+    [[nodiscard]] std::size_t size() const { return counts.size(); }
+    void clear();
+  };
+
   explicit SurfacePool(std::uint32_t capacity);
 
   [[nodiscard]] static constexpr std::size_t bytesPerSlot() {
     return sizeof(SurfaceVertex) * chunk_grid::vertexCount +
-           sizeof(ChunkSurface::NormalOffset) * ChunkSurface::nodes * ChunkSurface::nodes;
+           sizeof(NormalImage::Texel) * NormalImage::width * NormalImage::height;
   }
 
   [[nodiscard]] SlotPool<TileIndex>& slots() { return slots_; }
@@ -29,8 +41,10 @@ class SurfacePool {
 
   /// The vertex array and the element buffer of all densities.
   void bind(GLuint normalUnit) const;
-  /// Draws the chunk in that slot with the vertex array bound; `step` 0..4, skirts on the edges of `skirtEdges`.
-  void draw(std::uint32_t slot, int step, chunk_grid::Columns columns, unsigned skirtEdges) const;
+  /// Adds the chunk in that slot to the draws; `step` 0..4, skirts on the edges of `skirtEdges`.
+  void add(Draws& draws, std::uint32_t slot, int step, chunk_grid::Columns columns, unsigned skirtEdges) const;
+  /// Draws them in one call with the vertex array bound; shaders tell them apart by gl_DrawID.
+  static void draw(const Draws& draws);
 
   /// The vertex layout alone, for warm-up draws on another context.
   static void describeVertices(GLuint vertexArray, GLuint vertexBuffer);

@@ -11,6 +11,9 @@ namespace meridian::globebrowsing {
 
 namespace {
 
+/// What is known of tiles long gone is dropped when it is of that many.
+constexpr std::size_t mostFiner = 1 << 15;
+
 class HeightJob final : public TileJob {
  public:
   HeightJob(std::shared_ptr<TileProvider> provider, std::shared_ptr<const Tiling> tiling, const TileIndex& index)
@@ -62,6 +65,7 @@ SurfaceStore::SurfaceStore(std::shared_ptr<const Tiling> tiling, LayerManager& l
     : tiling_(std::move(tiling)), layers_(layers), streamer_(streamer), pool_(capacity) {
   resident_.reserve(capacity);
   arrivals_.reserve(capacity);
+  finer_.reserve(mostFiner);
 }
 
 SurfaceStore::~SurfaceStore() {
@@ -77,6 +81,10 @@ void SurfaceStore::beginFrame(std::uint64_t frame) {
     streamer_.forget(stream_);
     stream_ = streamer_.newStream();
     gathered_.resize(heights.enabledLayers().size());
+    finer_.clear();
+  }
+  if (finer_.size() > mostFiner) {
+    finer_.clear();
   }
   opening_.update(heights);
 }
@@ -167,10 +175,14 @@ const ChunkSurface* SurfaceStore::find(const TileIndex& index) const {
 }
 
 bool SurfaceStore::hasFinerHeights(const TileIndex& index) const {
+  if (const auto found = finer_.find(index); found != finer_.end()) {
+    return found->second;
+  }
   const std::vector<Layer*>& enabled = layers_.group(LayerGroupId::HeightLayers).enabledLayers();
-  return std::any_of(enabled.begin(), enabled.end(), [&](const Layer* layer) {
+  const bool finer = std::any_of(enabled.begin(), enabled.end(), [&](const Layer* layer) {
     return layer->isReady() && layer->provider()->hasFinerHeights(*tiling_, index);
   });
+  return finer_.emplace(index, finer).first->second;
 }
 
 SurfaceStore::Nearest SurfaceStore::nearest(const TileIndex& index) const {

@@ -82,6 +82,7 @@ class SurfaceStore {
   TileStreamer& streamer_;
   SurfacePool pool_;
   std::unordered_map<TileIndex, Resident> resident_;
+  mutable std::unordered_map<TileIndex, bool> finer_;  ///< what hasFinerHeights found; asked for every frame
   std::vector<Arrival> arrivals_;
   std::vector<TileAnswer> gathered_;  ///< by enabled height layer, of the tile being looked at
   OpeningWait opening_;

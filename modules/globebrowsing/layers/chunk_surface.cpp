@@ -29,10 +29,6 @@ std::array<float, 3> narrow(const glm::dvec3& vector) {
   return {static_cast<float>(vector.x), static_cast<float>(vector.y), static_cast<float>(vector.z)};
 }
 
-std::uint8_t signedByte(double value) {
-  return static_cast<std::uint8_t>(128 + std::lround(std::clamp(value, -1.0, 1.0) * 127.0));
-}
-
 }  // namespace
 
 glm::dvec3 bilinear(const std::array<glm::dvec3, 4>& corners, const glm::dvec2& uv) {
@@ -165,17 +161,10 @@ void ChunkSurface::makeNormals(const Nodes& all) {
       const glm::dvec3& vertical = all.normals[Nodes::at(column, row)];
       leastCosine = std::min(leastCosine, glm::dot(vertical, cone_.axis));
       offsets.push_back(surfaceNormal(all, column, row) - vertical);
-      const glm::dvec3 size = glm::abs(offsets.back());
-      normalScale_ = std::max({normalScale_, size.x, size.y, size.z});
     }
   }
   cone_.angle = std::acos(std::clamp(leastCosine, -1.0, 1.0));
-  const double unit = normalScale_ > 0.0 ? 1.0 / normalScale_ : 0.0;
-  normalOffsets_.reserve(offsets.size());
-  for (const glm::dvec3& offset : offsets) {
-    normalOffsets_.push_back(
-        {signedByte(offset.x * unit), signedByte(offset.y * unit), signedByte(offset.z * unit), 0});
-  }
+  normals_ = NormalImage(offsets);
 }
 
 glm::dvec3 ChunkSurface::surfaceNormal(const Nodes& all, int column, int row) {
@@ -235,8 +224,7 @@ double ChunkSurface::heightAt(const glm::dvec2& uv) const {
 }
 
 std::size_t ChunkSurface::bytes() const {
-  return sizeof(*this) + heights_.size() * sizeof(float) + vertices_.size() * sizeof(SurfaceVertex) +
-         normalOffsets_.size() * sizeof(NormalOffset);
+  return sizeof(*this) + heights_.size() * sizeof(float) + vertices_.size() * sizeof(SurfaceVertex) + normals_.bytes();
 }
 
 }  // namespace meridian::globebrowsing

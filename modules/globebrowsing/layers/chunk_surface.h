@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "globebrowsing/layers/chunk_grid.h"
+#include "globebrowsing/layers/normal_image.h"
 #include "globebrowsing/streaming/tile_data.h"
 #include "globebrowsing/streaming/tile_residency.h"
 #include "globebrowsing/tiling/tiling.h"
@@ -29,13 +30,10 @@ static_assert(sizeof(SurfaceVertex) == 32);
 /// Bounds, picking, heightAt, normals and vertices all come from the same heights, so they cannot disagree.
 class ChunkSurface final : public TileData {
  public:
-  static constexpr int nodes = 129;  ///< a side, node-registered: the first and last lie on the edges
-  static constexpr int apron = 1;    ///< nodes beyond each edge, for normals
+  static constexpr int nodes =
+      NormalImage::nodes;          ///< 129 a side, node-registered: the first and last lie on the edges
+  static constexpr int apron = 1;  ///< nodes beyond each edge, for normals
   static constexpr int heightSide = nodes + 2 * apron;
-  /// A texel of the normals: unit surface normal minus ellipsoid normal, in model space, each component as
-  /// (value - 128) / 127 * normalScale(), so that 0 is exact and gentle tiles get the finest steps. (Bytes, because
-  /// software renderers filter them several times faster than anything wider.)
-  using NormalOffset = std::array<std::uint8_t, 4>;
 
   /// `heights`: heightSide x heightSide metres, row by row from the north-west, none of them not-a-number.
   ChunkSurface(const Tiling& tiling, const TileIndex& index, std::vector<float> heights);
@@ -55,10 +53,7 @@ class ChunkSurface final : public TileData {
   /// and across the edge. (Parallels bend along the surface; meridians do not.)
   [[nodiscard]] double drift(int step) const { return drifts_[static_cast<std::size_t>(step)]; }
   [[nodiscard]] std::span<const SurfaceVertex> vertices() const { return vertices_; }
-  /// nodes x nodes, rows from the north.
-  [[nodiscard]] std::span<const NormalOffset> normalOffsets() const { return normalOffsets_; }
-  /// The largest component of any normal offset; 0 for a flat tile.
-  [[nodiscard]] double normalScale() const { return normalScale_; }
+  [[nodiscard]] const NormalImage& normals() const { return normals_; }
   /// 1 - (narrower over wider of the north and the south edge), 0..1; below 0 when the south edge is the narrower one.
   /// 0 for a root between two poles.
   [[nodiscard]] double taper() const { return taper_; }
@@ -91,8 +86,7 @@ class ChunkSurface final : public TileData {
   std::array<double, chunk_grid::steps> errors_{};
   std::array<double, chunk_grid::steps> drifts_{};
   std::vector<SurfaceVertex> vertices_;
-  std::vector<NormalOffset> normalOffsets_;
-  double normalScale_ = 0.0;
+  NormalImage normals_;
   double taper_ = 0.0;
   chunk_grid::Columns columns_ = chunk_grid::Columns::Full;
   NormalCone cone_;

@@ -61,7 +61,11 @@ void warmChunks(GLuint program, bool blended) {
   glBindVertexArray(vertexArray.id());
   for (const graphics::Sampler* sampler : {&samplers.plain, &samplers.polar}) {
     glBindSampler(chunk_bindings::compositeUnit, sampler->id());
-    glDrawElementsBaseVertex(GL_TRIANGLES, 3, GL_UNSIGNED_SHORT, nullptr, 0);
+    SurfacePool::Draws draws;
+    draws.counts = {3, 3};
+    draws.firstElements = {nullptr, nullptr};
+    draws.firstVertices = {0, 0};
+    SurfacePool::draw(draws);
   }
 }
 

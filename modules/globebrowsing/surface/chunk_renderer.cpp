@@ -28,12 +28,16 @@ constexpr double skirtFlare = 1.5;
 /// Tiles that touch a pole taper to nothing; in the others the wider edge is at most about twice the narrower.
 constexpr double polarTaper = 0.9;
 
+double texelsPerPixel(int texels, const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
+  const double meridian = glm::distance(surface.corners()[0], surface.corners()[2]);
+  return texels * chunk.distance / (meridian * view.pixelsPerRadian);
+}
+
 /// Whether a chunk is sampled as polar tiles are. One that is shown much smaller than its composite needs all levels.
 bool isPolar(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
   constexpr double mostTexelsPerPixel = 3.0;
-  const double meridian = glm::distance(surface.corners()[0], surface.corners()[2]);
   return std::abs(surface.taper()) > polarTaper &&
-         colourLayout.interior * chunk.distance < mostTexelsPerPixel * meridian * view.pixelsPerRadian;
+         texelsPerPixel(colourLayout.interior, surface, chunk, view) < mostTexelsPerPixel;
 }
 
 /// A camera that is not a number never reaches the GPU.
@@ -57,13 +61,18 @@ bool isInDaylight(const ChunkSurface& surface, const glm::dvec3& light) {
   return fromLight + cone.angle < std::numbers::pi / 2.0 - leastDaylight;
 }
 
+int normalLevel(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
+  const double nodes = texelsPerPixel(ChunkSurface::nodes - 1, surface, chunk, view);
+  return nodes < 1.0 ? 0 : std::min(static_cast<int>(std::lround(std::log2(nodes))), NormalImage::levels - 1);
+}
+
 ChunkRenderer::ChunkRenderer(graphics::Graphics& graphics)
     : programs_(graphics),
       uniforms_(std::size_t{128} << 10, static_cast<std::size_t>(graphics.limits().uniformBlockAlignment)) {}
 
 std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
-  const auto isVisible = [&](const SelectedChunk& chunk) { return (chunk.views >> job.viewNumber & 1U) != 0; };
-  if (std::none_of(job.chunks.begin(), job.chunks.end(), isVisible)) {
+  prepare(job, tiles);
+  if (prepared_.empty()) {
     return 0;
   }
   ViewBlock view;
@@ -76,29 +85,46 @@ std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
   if (!isFinite(view)) {
     return 0;
   }
-  uniforms_.reserve(uniforms_.aligned(sizeof(ViewBlock)) + job.chunks.size() * uniforms_.aligned(sizeof(ChunkBlock)));
+  // Translucent ones are not sorted by what they are drawn with: each may differ from the last.
+  const std::size_t batches =
+      programs_.key().blended ? prepared_.size() : prepared_.size() / ChunkBlock::most + variantCount;
+  uniforms_.reserve(uniforms_.aligned(sizeof(ViewBlock)) + batches * uniforms_.aligned(sizeof(ChunkBlock)));
   uniforms_.writeAndBind(viewBlock, view);
 
-  if (!bindForDrawing(tiles, true)) {
-    return 0;
-  }
-  if (programs_.key().blended) {
-    enableBlending();
-  }
-  inUse_ = programs_.full();
-  polar_ = false;
-  std::size_t drawn = 0;
-  for (const SelectedChunk& chunk : job.chunks) {
-    if (isVisible(chunk)) {
-      drawChunk(chunk, job, tiles);
-      ++drawn;
+  for (auto first = prepared_.begin(); first != prepared_.end();) {
+    const auto alike = [&](const Prepared& prepared) { return prepared.variant == first->variant; };
+    const auto most = std::min(static_cast<std::ptrdiff_t>(ChunkBlock::most), prepared_.end() - first);
+    const auto last = std::find_if_not(first, first + most, alike);
+    if (!bindForDrawing(tiles, first->variant.night, first->variant.polar)) {
+      return 0;
     }
+    drawBatch({first, last}, job, tiles);
+    first = last;
   }
   unbind();
-  return drawn;
+  return prepared_.size();
 }
 
-bool ChunkRenderer::bindForDrawing(const GlobeTiles& tiles, bool night) const {
+void ChunkRenderer::prepare(const Job& job, const GlobeTiles& tiles) {
+  prepared_.clear();
+  for (const SelectedChunk& chunk : job.chunks) {
+    const ChunkSurface* surface = tiles.surfaces().find(chunk.index);
+    const std::optional<std::uint32_t> slot = tiles.surfaces().slot(chunk.index);
+    if ((chunk.views >> job.viewNumber & 1U) == 0 || surface == nullptr || !slot) {
+      continue;
+    }
+    const Variant variant{!isInDaylight(*surface, job.view->lightDirection), isPolar(*surface, chunk, *job.view)};
+    prepared_.push_back({&chunk, surface, *slot, variant});
+  }
+  // What is translucent is drawn near to far whatever it takes: nothing may shine through the globe itself.
+  if (!programs_.key().blended) {
+    std::sort(prepared_.begin(), prepared_.end(), [](const Prepared& a, const Prepared& b) {
+      return a.variant != b.variant ? a.variant < b.variant : a.chunk < b.chunk;
+    });
+  }
+}
+
+bool ChunkRenderer::bindForDrawing(const GlobeTiles& tiles, bool night, bool polar) const {
   const GLuint program = night ? programs_.full() : programs_.daylight();
   if (program == 0) {
     return false;
@@ -106,7 +132,11 @@ bool ChunkRenderer::bindForDrawing(const GlobeTiles& tiles, bool night) const {
   glUseProgram(program);
   glEnable(GL_CULL_FACE);
   glBindTextureUnit(compositeUnit, tiles.composites().composer().composites());
-  glBindSampler(compositeUnit, tiles.composites().composer().samplers().plain.id());
+  const Composer::Samplers& samplers = tiles.composites().composer().samplers();
+  glBindSampler(compositeUnit, polar ? samplers.polar.id() : samplers.plain.id());
+  if (programs_.key().blended) {
+    enableBlending();
+  }
   tiles.surfaces().pool().bind(normalUnit);
   return true;
 }
@@ -120,53 +150,46 @@ void ChunkRenderer::unbind() const {
   glUseProgram(0);
 }
 
-void ChunkRenderer::useProgram(GLuint program) {
-  if (program != inUse_) {
-    glUseProgram(program);
-    inUse_ = program;
+void ChunkRenderer::drawBatch(std::span<const Prepared> batch, const Job& job, GlobeTiles& tiles) {
+  const UniformRing::Block block = uniforms_.take(sizeof(ChunkBlock));
+  auto* parameters = reinterpret_cast<ChunkParameters*>(block.bytes);
+  draws_.clear();
+  for (const Prepared& prepared : batch) {
+    *parameters++ = parametersOf(prepared, job, tiles);
+    tiles.surfaces().pool().add(draws_, prepared.slot, prepared.chunk->step, prepared.surface->columns(),
+                                job.skirts ? prepared.chunk->skirtEdges : 0U);
   }
+  uniforms_.bind(chunkBlock, block);
+  SurfacePool::draw(draws_);
 }
 
-void ChunkRenderer::useSampler(const GlobeTiles& tiles, bool polar) {
-  if (polar != polar_) {
-    const Composer::Samplers& samplers = tiles.composites().composer().samplers();
-    glBindSampler(compositeUnit, polar ? samplers.polar.id() : samplers.plain.id());
-    polar_ = polar;
+ChunkParameters ChunkRenderer::parametersOf(const Prepared& prepared, const Job& job, GlobeTiles& tiles) const {
+  const SelectedChunk& chunk = *prepared.chunk;
+  const ChunkSurface& surface = *prepared.surface;
+  ChunkParameters parameters;
+  for (std::size_t i = 0; i < parameters.corners.size(); ++i) {
+    parameters.corners[i] = glm::vec4(glm::vec3(surface.corners()[i] - job.view->cameraPosition), 1.0F);
   }
-}
-
-void ChunkRenderer::drawChunk(const SelectedChunk& chunk, const Job& job, GlobeTiles& tiles) {
-  const ChunkSurface* surface = tiles.surfaces().find(chunk.index);
-  const std::optional<std::uint32_t> slot = tiles.surfaces().slot(chunk.index);
-  if (surface == nullptr || !slot) {
-    return;
-  }
-  const bool lit = isInDaylight(*surface, job.view->lightDirection);
-  useSampler(tiles, isPolar(*surface, chunk, *job.view));
-  useProgram(lit ? programs_.daylight() : programs_.full());
-  ChunkBlock block;
-  for (std::size_t i = 0; i < block.corners.size(); ++i) {
-    block.corners[i] = glm::vec4(glm::vec3(surface->corners()[i] - job.view->cameraPosition), 1.0F);
-  }
-  const std::array<bool, compositeKindCount> used{true, programs_.key().night && !lit, programs_.key().overlay};
+  const std::array<bool, compositeKindCount> used{true, programs_.key().night && prepared.variant.night,
+                                                  programs_.key().overlay};
   for (const CompositeKind kind : allCompositeKinds) {
     const auto i = static_cast<std::size_t>(kind);
     if (!used[i]) {
       continue;
     }
     if (const auto placement = tiles.composites().place(kind, chunk.index, chunk.colourLevel)) {
-      block.composites[i] = placement->transform;
-      block.layers[static_cast<int>(i)] = static_cast<float>(placement->slot);
+      parameters.composites[i] = placement->transform;
+      parameters.layers[static_cast<int>(i)] = static_cast<float>(placement->slot);
     }
   }
-  block.layers.w = static_cast<float>(*slot);
-  block.skirt = static_cast<float>(chunk.skirt);
-  block.flare = static_cast<float>(skirtFlare * surface->drift(chunk.step));
-  block.lift = static_cast<float>(surface->lift(chunk.step));
-  block.level = static_cast<float>(chunk.index.level);
-  block.normalScale = static_cast<float>(surface->normalScale());
-  uniforms_.writeAndBind(chunkBlock, block);
-  tiles.surfaces().pool().draw(*slot, chunk.step, surface->columns(), job.skirts ? chunk.skirtEdges : 0U);
+  parameters.layers.w = static_cast<float>(prepared.slot);
+  parameters.skirt = static_cast<float>(chunk.skirt);
+  parameters.flare = static_cast<float>(skirtFlare * surface.drift(chunk.step));
+  parameters.lift = static_cast<float>(surface.lift(chunk.step));
+  parameters.level = static_cast<float>(chunk.index.level);
+  parameters.normals = NormalImage::transform(normalLevel(surface, chunk, *job.view));
+  parameters.normalScale = static_cast<float>(surface.normals().scale());
+  return parameters;
 }
 
 }  // namespace meridian::globebrowsing

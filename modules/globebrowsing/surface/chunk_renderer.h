@@ -1,8 +1,12 @@
 #pragma once
 
+#include <compare>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "globebrowsing/chunks/selection.h"
+#include "globebrowsing/gpu/chunk_blocks.h"
 #include "globebrowsing/gpu/globe_tiles.h"
 #include "globebrowsing/gpu/uniform_ring.h"
 #include "globebrowsing/surface/chunk_programs.h"
@@ -15,7 +19,11 @@ namespace meridian::globebrowsing {
 /// unit direction towards the light, in model space.
 [[nodiscard]] bool isInDaylight(const ChunkSurface& surface, const glm::dvec3& light);
 
-/// Draws selected chunks: one program, two array textures and one vertex array for all, two uniform blocks. Render
+/// The level of its normals that the chunk is drawn with: that whose nodes are nearest to a pixel apart.
+[[nodiscard]] int normalLevel(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view);
+
+/// Draws selected chunks: one program, two array textures and one vertex array for all, and one call for all that are
+/// drawn alike. Render
 /// thread only; a steady frame allocates nothing.
 class ChunkRenderer {
  public:
@@ -39,18 +47,33 @@ class ChunkRenderer {
   std::size_t draw(const Job& job, GlobeTiles& tiles);
   /// A program (with or without night layers), textures and state of draw(), for drawing something else the same way;
   /// whether there is a program.
-  bool bindForDrawing(const GlobeTiles& tiles, bool night) const;
+  bool bindForDrawing(const GlobeTiles& tiles, bool night, bool polar) const;
   /// Back to the default state.
   void unbind() const;
 
  private:
-  void useProgram(GLuint program);
-  void useSampler(const GlobeTiles& tiles, bool polar);
-  void drawChunk(const SelectedChunk& chunk, const Job& job, GlobeTiles& tiles);
+  /// What draws need different states for: a switch of program or sampler costs as much as several draws.
+  struct Variant {
+    bool night = true;
+    bool polar = false;
+    auto operator<=>(const Variant&) const = default;
+  };
+  static constexpr std::size_t variantCount = 4;
+  struct Prepared {
+    const SelectedChunk* chunk = nullptr;
+    const ChunkSurface* surface = nullptr;
+    std::uint32_t slot = 0;
+    Variant variant;
+  };
+  /// Finds what is to be drawn, and in which order.
+  void prepare(const Job& job, const GlobeTiles& tiles);
+  /// At most ChunkBlock::most chunks of one variant.
+  void drawBatch(std::span<const Prepared> batch, const Job& job, GlobeTiles& tiles);
+  [[nodiscard]] ChunkParameters parametersOf(const Prepared& prepared, const Job& job, GlobeTiles& tiles) const;
 
   ChunkPrograms programs_;
-  GLuint inUse_ = 0;    ///< program, while draw() draws
-  bool polar_ = false;  ///< sampler, likewise
+  std::vector<Prepared> prepared_;  ///< while draw() draws; near ones first
+  SurfacePool::Draws draws_;        ///< while drawBatch() draws
   UniformRing uniforms_;
 };
 

@@ -52,7 +52,7 @@ class BlockLayoutTest : public GpuTest {
 };
 
 TEST_F(BlockLayoutTest, ChunkBlocksLieWhereTheDriverReadsThem) {
-  compile("#include \"surface/blocks.glsl\"\n", "view.opacity + chunk.lift");
+  compile("#include \"surface/blocks.glsl\"\n", "view.opacity + chunks[63].lift");
   ASSERT_FALSE(HasFatalFailure());
   EXPECT_EQ(offset("ViewBlock.clipFromRelative"), offsetof(ViewBlock, clipFromRelative));
   EXPECT_EQ(offset("ViewBlock.lightDirection"), offsetof(ViewBlock, lightDirection));
@@ -60,15 +60,17 @@ TEST_F(BlockLayoutTest, ChunkBlocksLieWhereTheDriverReadsThem) {
   EXPECT_EQ(offset("ViewBlock.opacity"), offsetof(ViewBlock, opacity));
   EXPECT_LE(blockSize("ViewBlock"), static_cast<int>(sizeof(ViewBlock)));
 
-  EXPECT_EQ(offset("ChunkBlock.corners[0]"), offsetof(ChunkBlock, corners));
-  EXPECT_EQ(property("ChunkBlock.corners[0]", GL_ARRAY_STRIDE), static_cast<int>(sizeof(glm::vec4)));
-  EXPECT_EQ(offset("ChunkBlock.base"), offsetof(ChunkBlock, composites));
-  EXPECT_EQ(offset("ChunkBlock.night"), offsetof(ChunkBlock, composites) + sizeof(glm::vec4));
-  EXPECT_EQ(offset("ChunkBlock.overlay"), offsetof(ChunkBlock, composites) + 2 * sizeof(glm::vec4));
-  EXPECT_EQ(offset("ChunkBlock.layers"), offsetof(ChunkBlock, layers));
-  EXPECT_EQ(offset("ChunkBlock.skirt"), offsetof(ChunkBlock, skirt));
-  EXPECT_EQ(offset("ChunkBlock.level"), offsetof(ChunkBlock, level));
-  EXPECT_EQ(offset("ChunkBlock.lift"), offsetof(ChunkBlock, lift));
+  EXPECT_EQ(offset("chunks[0].corners[0]"), offsetof(ChunkParameters, corners));
+  EXPECT_EQ(property("chunks[0].corners[0]", GL_ARRAY_STRIDE), static_cast<int>(sizeof(glm::vec4)));
+  EXPECT_EQ(offset("chunks[0].base"), offsetof(ChunkParameters, composites));
+  EXPECT_EQ(offset("chunks[0].night"), offsetof(ChunkParameters, composites) + sizeof(glm::vec4));
+  EXPECT_EQ(offset("chunks[0].overlay"), offsetof(ChunkParameters, composites) + 2 * sizeof(glm::vec4));
+  EXPECT_EQ(offset("chunks[0].normals"), offsetof(ChunkParameters, normals));
+  EXPECT_EQ(offset("chunks[0].layers"), offsetof(ChunkParameters, layers));
+  EXPECT_EQ(offset("chunks[0].skirt"), offsetof(ChunkParameters, skirt));
+  EXPECT_EQ(offset("chunks[0].level"), offsetof(ChunkParameters, level));
+  EXPECT_EQ(offset("chunks[0].lift"), offsetof(ChunkParameters, lift));
+  EXPECT_EQ(offset("chunks[63].level"), 63 * sizeof(ChunkParameters) + offsetof(ChunkParameters, level));
   EXPECT_LE(blockSize("ChunkBlock"), static_cast<int>(sizeof(ChunkBlock)));
 }
 

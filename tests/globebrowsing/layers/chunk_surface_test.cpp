@@ -97,13 +97,13 @@ TEST(ChunkSurface, OnlyNarrowTilesAtAPoleHaveHalfTheColumns) {
 }
 
 glm::dvec3 normalOffset(const ChunkSurface& surface, int column, int row) {
-  const auto& texel = surface.normalOffsets()[static_cast<std::size_t>(row) * ChunkSurface::nodes + column];
-  return (glm::dvec3(texel[0], texel[1], texel[2]) - 128.0) / 127.0 * surface.normalScale();
+  const NormalImage::Texel& texel = surface.normals().texel(0, column, row);
+  return (glm::dvec3(texel[0], texel[1], texel[2]) - 128.0) / 127.0 * surface.normals().scale();
 }
 
 TEST(ChunkSurface, NormalsOfAFlatSurfaceAreTheEllipsoids) {
   const ChunkSurface surface(earth(), {1, 5, 7, 0}, std::vector<float>(side * side, 500.0F));
-  EXPECT_LT(surface.normalScale(), 1e-3);
+  EXPECT_LT(surface.normals().scale(), 1e-3);
 }
 
 TEST(ChunkSurface, NormalsOfASlopeAreItsGradients) {
