@@ -18,14 +18,17 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t entryOverhead = 512;
 constexpr std::size_t usesPerWrite = 512;
 
-// Bodies have a table of their own, so that noting a use does not write the body again.
-constexpr const char* tables = R"sql(
-  PRAGMA auto_vacuum = INCREMENTAL;
-  PRAGMA journal_mode = WAL;
+constexpr const char* habits = R"sql(
   PRAGMA synchronous = NORMAL;
   PRAGMA journal_size_limit = 16777216;
   PRAGMA trusted_schema = OFF;
   PRAGMA cell_size_check = ON;
+)sql";
+
+// Bodies have a table of their own, so that noting a use does not write the body again.
+constexpr const char* tables = R"sql(
+  PRAGMA auto_vacuum = INCREMENTAL;
+  PRAGMA journal_mode = WAL;
   CREATE TABLE IF NOT EXISTS entries(
     id INTEGER PRIMARY KEY,
     key TEXT NOT NULL UNIQUE,
@@ -36,6 +39,7 @@ constexpr const char* tables = R"sql(
     used INTEGER NOT NULL);
   CREATE INDEX IF NOT EXISTS entries_by_use ON entries(used, bytes);
   CREATE TABLE IF NOT EXISTS bodies(id INTEGER PRIMARY KEY, body BLOB NOT NULL);
+  PRAGMA user_version = 1;
 )sql";
 
 bool isDamage(int code) {
@@ -220,7 +224,7 @@ void DiskCache::open() {
   } else {
     const std::string what = problem ? problem.message() : reason(code);
     const bool isHeld = code == SQLITE_BUSY || code == SQLITE_LOCKED;
-    const bool isReadable = !isHeld && openForReading(file) == SQLITE_OK;
+    const bool isReadable = openForReading(file) == SQLITE_OK;
     degrade(isReadable ? State::Reading : State::Unusable, what,
             isHeld ? "end that program" : "make that folder writable, or name another one");
   }
@@ -251,7 +255,19 @@ int DiskCache::openForWriting(const fs::path& file) {
   if (database_.isReadOnly()) {
     return SQLITE_READONLY;
   }
-  if (const int code = database_.run(tables); code != SQLITE_OK) {
+  if (const int code = database_.run(habits); code != SQLITE_OK) {
+    return code;
+  }
+  bool isNew = false;
+  {
+    SqliteDatabase::Statement version(database_, "PRAGMA user_version");
+    if (const int code = version.step(); code != SQLITE_ROW) {
+      return code;
+    }
+    isNew = version.integer(0) == 0;
+  }
+  // Making what is there already would wait for others that write.
+  if (const int code = isNew ? database_.run(tables) : SQLITE_OK; code != SQLITE_OK) {
     return code;
   }
   SqliteDatabase::Statement sums(database_, "SELECT COALESCE(SUM(bytes), 0), COALESCE(MAX(used), 0) FROM entries");

@@ -20,6 +20,9 @@ struct FetchRequest {
   std::size_t maximumBytes = std::size_t{32} << 20;  ///< after decoding of the content encoding
   /// Statuses that say "nothing here": not an error, and remembered for a while. 204 always is one.
   std::vector<int> emptyStatuses{404};
+  /// While its server is down it waits, as a tile should; otherwise that is an error, for what somebody sits and waits
+  /// for.
+  bool isPatient = true;
 };
 
 struct AnswerOrigin;
@@ -59,7 +62,8 @@ class Fetcher {
 
   /// `done` is called once, on a thread of the fetcher's, and must be quick; it may start or cancel other requests, but
   /// not destroy the fetcher. An error is final for this request: what can be tried again was. While its server is
-  /// down a request waits for as long as somebody holds it. A fetcher that is destroyed cancels all its requests.
+  /// down a patient request waits for as long as somebody holds it. A fetcher that is destroyed cancels all its
+  /// requests.
   [[nodiscard]] virtual std::unique_ptr<PendingFetch> fetch(FetchRequest request, Done done) = 0;
 
   /// The body turned out to be what was asked for; only now may it be kept on disk. Of an answer from the cache: no

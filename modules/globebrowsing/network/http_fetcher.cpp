@@ -72,7 +72,7 @@ std::string cacheKey(const WebAddress& address, const FetchRequest& request) {
 }
 
 std::string identityOf(const std::string& key, const FetchRequest& request) {
-  std::string identity = key + '\n' + std::to_string(request.maximumBytes);
+  std::string identity = key + '\n' + std::to_string(request.maximumBytes) + (request.isPatient ? "" : " !");
   for (const int status : request.emptyStatuses) {
     identity += ' ' + std::to_string(status);
   }
@@ -351,8 +351,14 @@ void HttpFetcher::Engine::found(Id id, std::optional<CachedAnswer> kept) {
     return;
   }
   flight.kept = std::move(kept);
-  if (mayServeStale(flight) && !queue_.mayAsk(flight.address.host, Clock::now())) {
+  const bool isDown = !queue_.mayAsk(flight.address.host, Clock::now());
+  if (isDown && mayServeStale(flight)) {
     serveStale(id);
+    return;
+  }
+  if (isDown && !flight.request.isPatient) {
+    finish(id, failure("its server does not answer at the moment", flight.request.url,
+                       "try again later, or check the network"));
     return;
   }
   enqueue(id, flight);
@@ -360,7 +366,7 @@ void HttpFetcher::Engine::found(Id id, std::optional<CachedAnswer> kept) {
 
 void HttpFetcher::Engine::enqueue(Id id, Flight& flight) {
   flight.isQueued = true;
-  queue_.add(id, flight.address.host, -std::numeric_limits<double>::infinity());
+  queue_.add(id, flight.address.host, -std::numeric_limits<double>::infinity(), flight.request.isPatient);
   renew(flight.waiters.front());
 }
 

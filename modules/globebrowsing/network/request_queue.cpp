@@ -5,9 +5,9 @@
 
 namespace meridian::globebrowsing {
 
-void RequestQueue::add(Id id, const std::string& host, double priority) {
+void RequestQueue::add(Id id, const std::string& host, double priority, bool isPatient) {
   Host& server = hosts_.try_emplace(host, retry_).first->second;
-  const bool isNew = requests_.emplace(id, Request{&server, priority}).second;
+  const bool isNew = requests_.emplace(id, Request{&server, priority, isPatient, server.answers}).second;
   assert(isNew);
   static_cast<void>(isNew);
   server.waiting.insert({priority, id});
@@ -97,6 +97,7 @@ bool RequestQueue::finish(Id id, const Ending& ending, TimePoint now) {
   const bool wasUp = host.breaker.state() == CircuitBreaker::State::Up;
   const bool blamesHost = ending.outcome == Outcome::Unreachable || ending.outcome == Outcome::Unavailable;
   if (!blamesHost) {
+    ++host.answers;
     host.breaker.succeeded();
   } else {
     host.breaker.failed(wasProbe, now, random_());
@@ -109,18 +110,20 @@ bool RequestQueue::finish(Id id, const Ending& ending, TimePoint now) {
     return false;
   }
 
-  if (blamesHost && !wasUp) {
-    // The server is down, which is not this request's fault: it waits for as long as somebody wants it.
-    ++request.probes;
-    wait(request, id, now, now);
-    return true;
-  }
-  if (++request.failures >= retry_.attempts) {
+  // A server that answers nobody is down, though it may take some failures to be sure.
+  const bool isHostsFault = blamesHost && (!wasUp || host.answers == request.answersSeen);
+  const bool isDown = host.breaker.state() != CircuitBreaker::State::Up;
+  request.answersSeen = host.answers;
+  ++(isHostsFault && request.isPatient ? request.hostFailures : request.failures);
+  if (request.failures >= retry_.attempts || (isDown && !request.isPatient)) {
     requests_.erase(place);
     return false;
   }
-  const auto delay = std::max(retryDelay(retry_, request.failures, random_()),
-                              ending.retryAfter.value_or(std::chrono::milliseconds(0)));
+  auto delay = std::chrono::milliseconds(0);  // while it is down, its pause is delay enough
+  if (!isDown) {
+    delay = std::max(retryDelay(retry_, request.failures + request.hostFailures, random_()),
+                     ending.retryAfter.value_or(delay));
+  }
   wait(request, id, now + delay, now);
   return true;
 }
@@ -184,7 +187,7 @@ std::optional<RequestQueue::Id> RequestQueue::best(const Host& host, TimePoint n
 std::optional<RequestQueue::Id> RequestQueue::leastSuspect(const Host& host) const {
   const auto suspicion = [&](const Place& place) {
     const Request& request = requests_.at(place.id);
-    return request.failures + request.probes;
+    return request.failures + request.hostFailures;
   };
   const auto least = std::min_element(host.waiting.begin(), host.waiting.end(),
                                       [&](const Place& a, const Place& b) { return suspicion(a) < suspicion(b); });

@@ -44,8 +44,9 @@ class RequestQueue {
   RequestQueue(const ConcurrencyOptions& concurrency, const RetryOptions& retry, Random random)
       : concurrency_(concurrency), retry_(retry), random_(std::move(random)) {}
 
-  /// `host` is whatever shares limits and fate: scheme, name and port.
-  void add(Id id, const std::string& host, double priority);
+  /// `host` is whatever shares limits and fate: scheme, name and port. One that is not patient is over when its host
+  /// turns out to be down.
+  void add(Id id, const std::string& host, double priority, bool isPatient = true);
   void setPriority(Id id, double priority);
   /// In whatever state it is.
   void remove(Id id);
@@ -79,6 +80,7 @@ class RequestQueue {
     CircuitBreaker breaker;
     bool isMultiplexed = false;
     int running = 0;
+    std::uint64_t answers = 0;  ///< whatever they said
     std::optional<Id> probe;
     std::set<Place> waiting;
     std::multimap<TimePoint, Id> delayed;
@@ -86,9 +88,11 @@ class RequestQueue {
   struct Request {
     Host* host;
     double priority;
+    bool isPatient;
+    std::uint64_t answersSeen;  ///< by its host when it was added, or last failed
     State state = State::Waiting;
-    int failures = 0;  ///< while its host was up
-    int probes = 0;    ///< failures while it was not
+    int failures = 0;      ///< that count
+    int hostFailures = 0;  ///< that are its host's fault
     std::multimap<TimePoint, Id>::iterator delay{};
   };
 

@@ -19,8 +19,8 @@ enum class Outcome {
 
 /// How failed requests are tried again.
 struct RetryOptions {
-  /// How often in all a request is sent while its server answers others; 1 is never again. What fails while the
-  /// server is taken to be down does not count (CircuitBreaker).
+  /// How often in all a request is sent; 1 is never again. Of a patient request, what fails while its server is down,
+  /// or answers nobody else either, does not count.
   int attempts = 5;
   /// The n-th wait is a random part of firstDelay * 2^(n-1), but at most of maximumDelay. 0 tries again at once.
   std::chrono::milliseconds firstDelay{500};

@@ -79,8 +79,10 @@ SqliteDatabase::Statement::Statement(SqliteDatabase& database, const char* text)
     : statement_(nullptr), failure_(database.prepared(text, &statement_)) {}
 
 SqliteDatabase::Statement::~Statement() {
-  sqlite3_reset(statement_);
-  sqlite3_clear_bindings(statement_);
+  if (statement_ != nullptr) {
+    sqlite3_reset(statement_);
+    sqlite3_clear_bindings(statement_);
+  }
 }
 
 SqliteDatabase::Statement& SqliteDatabase::Statement::bind(int place, std::int64_t value) {

@@ -300,7 +300,7 @@ TEST(HttpFetcher, SlowServersAreGivenUp) {
         options.limits.totalTime = std::chrono::milliseconds(300);
       }
       HttpFetcher fetcher(options);
-      const auto answer = askFor(fetcher, server.url(test.target));
+      const auto answer = ask(fetcher, {.url = server.url(test.target), .isPatient = false});
       ASSERT_FALSE(answer) << test.target;
       EXPECT_THAT(answer.error().what, HasSubstr("takes too long")) << test.target;
     }
@@ -347,6 +347,25 @@ TEST(HttpFetcher, WaitsForAServerThatIsDownAndComesBackByItself) {
   }
   EXPECT_EQ(server.count(), 50U);
   EXPECT_EQ(fetcher.statistics().failures, 0U);
+}
+
+TEST(HttpFetcher, OneThatIsNotPatientSaysThatItsServerIsDown) {
+  FaultServer server;
+  server.on("/a", {.body = "a"});
+  server.refuse();
+  NetworkOptions options = quickOptions();
+  options.retry.firstPause = options.retry.maximumPause = std::chrono::milliseconds(100);
+  HttpFetcher fetcher(options);
+  Asked patient(fetcher, {.url = server.url("/a")});
+  for (int i = 0; i < 20; ++i) {
+    const auto answer = ask(fetcher, {.url = server.url("/a"), .isPatient = false});
+    ASSERT_FALSE(answer);
+    EXPECT_FALSE(answer.error().remedy.empty());
+  }
+  EXPECT_FALSE(patient.isThere());
+  server.listen();
+  ASSERT_TRUE(patient.wait());
+  EXPECT_TRUE(ask(fetcher, {.url = server.url("/a"), .isPatient = false}));
 }
 
 std::chrono::microseconds processorTime() {

@@ -85,10 +85,13 @@ inline Result<Fetched> askFor(Fetcher& fetcher, std::string url) {
 /// Until it is so, or a minute has passed.
 template <class Condition>
 bool eventually(Condition condition) {
-  for (int i = 0; i < 6000 && !condition(); ++i) {
+  for (int i = 0; i < 6000; ++i) {
+    if (condition()) {
+      return true;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  return condition();
+  return false;
 }
 
 }  // namespace meridian::globebrowsing

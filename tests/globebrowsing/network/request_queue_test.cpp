@@ -93,6 +93,42 @@ TEST_F(RequestQueueTest, GivesUpAfterTheLastAttemptWhileTheServerAnswers) {
   EXPECT_EQ(queue.size(), 0U);
 }
 
+TEST_F(RequestQueueTest, OneAddressThatHangsFailsWhileOthersAreAnsweredAndOnlyThen) {
+  RequestQueue queue = make(4, 4);
+  queue.add(1, "a", 1.0);
+  for (int round = 0; round < 20; ++round) {
+    ASSERT_THAT(startAll(queue), ElementsAre(1));
+    ASSERT_TRUE(fail(queue, 1)) << "nothing says that the server is up";
+    now += milliseconds(4000);
+  }
+  bool waits = true;
+  for (RequestQueue::Id id = 2; id < 6 && waits; ++id) {
+    queue.add(id, "a", 9.0);
+    const Ids started = startAll(queue);
+    ASSERT_EQ(started.front(), id);
+    ASSERT_FALSE(queue.finish(id, {}, now));
+    if (started.size() == 1) {
+      ASSERT_THAT(startAll(queue), ElementsAre(1));
+    }
+    waits = fail(queue, 1);
+    EXPECT_EQ(waits, id < 4) << "three attempts";
+    now += milliseconds(4000);
+  }
+  EXPECT_FALSE(waits);
+}
+
+TEST_F(RequestQueueTest, OneThatIsNotPatientIsOverWhenItsHostIsDown) {
+  RequestQueue queue = make(4, 4);
+  for (RequestQueue::Id id = 1; id <= 4; ++id) {
+    queue.add(id, "a", 1.0, id % 2 == 0);
+  }
+  EXPECT_EQ(startAll(queue).size(), 4U);
+  EXPECT_TRUE(fail(queue, 1));
+  EXPECT_TRUE(fail(queue, 2));
+  EXPECT_TRUE(fail(queue, 4));
+  EXPECT_FALSE(fail(queue, 3)) << "the fourth failure is the one that tells";
+}
+
 TEST_F(RequestQueueTest, FinalIsFinal) {
   RequestQueue queue = make(4, 4);
   queue.add(1, "a", 1.0);
