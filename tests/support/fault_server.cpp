@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <system_error>
 #include <utility>
 
@@ -17,6 +18,9 @@
 namespace meridian {
 
 namespace {
+
+/// A proxy that the machine may have is not for servers on loopback. Set before there are threads.
+[[maybe_unused]] const int isWithoutProxy = ::setenv("no_proxy", "127.0.0.1,localhost", 1);
 
 bool sendAll(int connection, const std::string& bytes) {
   std::size_t sent = 0;

@@ -22,6 +22,9 @@ namespace meridian {
 
 namespace {
 
+/// A proxy that the machine may have is not for servers on loopback. Set before there are threads.
+[[maybe_unused]] const int isWithoutProxy = ::setenv("no_proxy", "127.0.0.1,localhost", 1);
+
 namespace fs = std::filesystem;
 
 sockaddr_in loopback(int port) {

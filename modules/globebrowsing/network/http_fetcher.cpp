@@ -13,6 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include <pthread.h>
+#include <signal.h>
+
 #include "globebrowsing/network/cache_worker.h"
 #include "globebrowsing/network/delivery.h"
 #include "globebrowsing/network/http_transfers.h"
@@ -61,6 +64,14 @@ struct Flight {
 /// In the order of greatness, whatever it is.
 double orderable(double priority) {
   return std::isnan(priority) ? -std::numeric_limits<double>::infinity() : priority;
+}
+
+double greatestPriority(const Flight& flight) {
+  double greatest = -std::numeric_limits<double>::infinity();
+  for (const auto& waiter : flight.waiters) {
+    greatest = std::max(greatest, waiter->priority.load());
+  }
+  return greatest;
 }
 
 std::string cacheKey(const WebAddress& address, const FetchRequest& request) {
@@ -238,6 +249,12 @@ void HttpFetcher::Engine::setCacheSize(std::uint64_t bytes) {
 }
 
 void HttpFetcher::Engine::run() {
+  // curl writes to connections that others have closed; told to use no signals it leaves this one to us.
+  sigset_t pipe;
+  sigemptyset(&pipe);
+  sigaddset(&pipe, SIGPIPE);
+  pthread_sigmask(SIG_BLOCK, &pipe, nullptr);
+
   std::vector<TransferEnding> endings;
   while (!stopping_) {
     for (const Mailbox::Task& task : mailbox_->take()) {
@@ -293,14 +310,9 @@ void HttpFetcher::Engine::begin(FetchRequest request, const std::shared_ptr<Wait
 void HttpFetcher::Engine::renew(const std::shared_ptr<Waiter>& waiter) {
   waiter->isRenewed = false;
   const auto place = flights_.find(waiter->flight);
-  if (place == flights_.end() || !place->second.isQueued) {
-    return;
+  if (place != flights_.end() && place->second.isQueued) {
+    queue_.setPriority(place->first, greatestPriority(place->second));
   }
-  double greatest = -std::numeric_limits<double>::infinity();
-  for (const auto& other : place->second.waiters) {
-    greatest = std::max(greatest, other->priority.load());
-  }
-  queue_.setPriority(place->first, greatest);
 }
 
 void HttpFetcher::Engine::cancel(const std::shared_ptr<Waiter>& waiter) {
@@ -366,8 +378,7 @@ void HttpFetcher::Engine::found(Id id, std::optional<CachedAnswer> kept) {
 
 void HttpFetcher::Engine::enqueue(Id id, Flight& flight) {
   flight.isQueued = true;
-  queue_.add(id, flight.address.host, -std::numeric_limits<double>::infinity(), flight.request.isPatient);
-  renew(flight.waiters.front());
+  queue_.add(id, flight.address.host, greatestPriority(flight), flight.request.isPatient);
 }
 
 void HttpFetcher::Engine::startTransfers() {

@@ -293,7 +293,7 @@ TransferEnding HttpTransfers::endingOf(Transfer& transfer, int code) const {
     return ending;
   }
   if (code != CURLE_OK) {
-    ending.failure = failureOfCurl(static_cast<CURLcode>(code), transfer.detail.data(), url);
+    ending.failure = failureOfCurl(code, transfer.detail.data(), url);
     return ending;
   }
   long version = 0;

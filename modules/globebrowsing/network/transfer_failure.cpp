@@ -1,6 +1,9 @@
 #include "globebrowsing/network/transfer_failure.h"
 
 #include <string_view>
+#include <utility>
+
+#include <curl/curl.h>
 
 namespace meridian::globebrowsing {
 
@@ -99,9 +102,9 @@ const char* remedyOfStatus(int status) {
 
 }  // namespace
 
-TransferFailure failureOfCurl(CURLcode code, const std::string& detail, const std::string& url) {
-  const Explanation explanation = explain(code);
-  const std::string said = detail.empty() ? curl_easy_strerror(code) : detail;
+TransferFailure failureOfCurl(int code, const std::string& detail, const std::string& url) {
+  const Explanation explanation = explain(static_cast<CURLcode>(code));
+  const std::string said = detail.empty() ? curl_easy_strerror(static_cast<CURLcode>(code)) : detail;
   return {explanation.outcome, Error{explanation.what + (" (" + said + ")"), url, explanation.remedy}};
 }
 

@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include <curl/curl.h>
-
 #include "globebrowsing/network/retry_policy.h"
 #include "host/api/error.h"
 
@@ -15,8 +13,8 @@ struct TransferFailure {
   Error error;
 };
 
-/// Of a transfer that curl ended with `code`; `detail` is what curl says of it, may be empty.
-[[nodiscard]] TransferFailure failureOfCurl(CURLcode code, const std::string& detail, const std::string& url);
+/// Of a transfer that curl ended with `code`, a CURLcode; `detail` is what curl says of it, may be empty.
+[[nodiscard]] TransferFailure failureOfCurl(int code, const std::string& detail, const std::string& url);
 /// Of an answer whose status is no success.
 [[nodiscard]] TransferFailure failureOfStatus(int status, const std::string& url);
 
