@@ -6,6 +6,18 @@
 
 namespace meridian::globebrowsing {
 
+void CircuitBreaker::beginProbe(TimePoint now) {
+  state_ = State::Probing;
+  pauseEnd_ = now + options_.maximumPause;
+}
+
+void CircuitBreaker::abandonProbe(TimePoint now) {
+  if (state_ == State::Probing) {
+    state_ = State::Down;
+    pauseEnd_ = now;
+  }
+}
+
 void CircuitBreaker::succeeded() {
   state_ = State::Up;
   failures_ = 0;
@@ -30,7 +42,7 @@ void CircuitBreaker::failed(bool wasProbe, TimePoint now, double random) {
 
 void CircuitBreaker::pauseFor(std::chrono::milliseconds pause, TimePoint now) {
   pauseEnd_ = state_ == State::Up ? now + pause : std::max(pauseEnd_, now + pause);
-  state_ = State::Down;
+  state_ = state_ == State::Up ? State::Down : state_;
 }
 
 }  // namespace meridian::globebrowsing

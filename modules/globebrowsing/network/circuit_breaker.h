@@ -16,23 +16,24 @@ class CircuitBreaker {
   enum class State {
     Up,
     Down,    ///< nothing may be sent before pauseEnd()
-    Probing  ///< down, and one request is under way to see
+    Probing  ///< down, and one request is under way to see; if it hangs, the next may go at pauseEnd()
   };
 
   explicit CircuitBreaker(const RetryOptions& options) : options_(options) {}
 
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] TimePoint pauseEnd() const { return pauseEnd_; }
-  [[nodiscard]] bool mayProbe(TimePoint now) const { return state_ == State::Down && now >= pauseEnd_; }
+  [[nodiscard]] bool mayProbe(TimePoint now) const { return state_ != State::Up && now >= pauseEnd_; }
 
   /// The request that is sent now is the probe.
-  void beginProbe() { state_ = State::Probing; }
+  void beginProbe(TimePoint now);
   /// Nobody wants the probe any more: another may go.
-  void abandonProbe() { state_ = State::Down; }
+  void abandonProbe(TimePoint now);
 
   /// Any answer proves it up, also to a request that was sent before it was taken to be down.
   void succeeded();
-  /// `random` in [0, 1) shortens the pause by up to a quarter, so that many clients do not return together.
+  /// Of what is no probe nothing is learned while it is down. `random` in [0, 1) shortens the pause by up to a quarter,
+  /// so that many clients do not return together.
   void failed(bool wasProbe, TimePoint now, double random);
   /// Down for as long as the server itself has asked.
   void pauseFor(std::chrono::milliseconds pause, TimePoint now);

@@ -68,6 +68,9 @@ void DiskCache::setMode(CacheMode mode) {
 }
 
 void DiskCache::setMaximumBytes(std::uint64_t bytes) {
+  if (options_.maximumBytes == 0 && bytes > 0) {
+    state_ = State::Unopened;
+  }
   options_.maximumBytes = bytes;
   if (canWrite()) {
     evict();
@@ -243,6 +246,9 @@ int DiskCache::openForReading(const fs::path& file) {
     if (code == SQLITE_ROW || code == SQLITE_DONE) {
       state_ = State::Reading;
       return SQLITE_OK;
+    }
+    if (code == SQLITE_BUSY || code == SQLITE_LOCKED) {
+      break;  // it is no such medium
     }
   }
   return code;

@@ -324,7 +324,7 @@ void HttpFetcher::Engine::cancel(const std::shared_ptr<Waiter>& waiter) {
   std::erase(place->second.waiters, waiter);
   if (place->second.waiters.empty()) {
     const Id id = place->first;
-    queue_.remove(id);
+    queue_.remove(id, Clock::now());
     transfers_.cancel(id);
     take(id);
   } else {
@@ -462,7 +462,7 @@ void HttpFetcher::Engine::failed(Id id, TransferFailure failure, const HeaderFie
   }
   const bool isTriedAgain = queue_.finish(id, ending, Clock::now());
   if (failure.outcome != Outcome::Final && mayServeStale(flight)) {
-    queue_.remove(id);
+    queue_.remove(id, Clock::now());
     serveStale(id);
   } else if (isTriedAgain) {
     for (const auto& waiter : flight.waiters) {
@@ -494,7 +494,7 @@ void HttpFetcher::Engine::serveStaleOf(const std::string& host) {
     }
   }
   for (const Id id : served) {
-    queue_.remove(id);
+    queue_.remove(id, Clock::now());
     transfers_.cancel(id);
     serveStale(id);
   }

@@ -26,7 +26,7 @@ void RequestQueue::setPriority(Id id, double priority) {
   request.priority = priority;
 }
 
-void RequestQueue::remove(Id id) {
+void RequestQueue::remove(Id id, TimePoint now) {
   const auto place = requests_.find(id);
   if (place == requests_.end()) {
     return;
@@ -44,9 +44,7 @@ void RequestQueue::remove(Id id) {
       release(request);
       if (host.probe == id) {
         host.probe.reset();
-        if (host.breaker.state() == CircuitBreaker::State::Probing) {
-          host.breaker.abandonProbe();
-        }
+        host.breaker.abandonProbe(now);
       }
       break;
   }
@@ -72,8 +70,8 @@ std::optional<RequestQueue::Id> RequestQueue::start(TimePoint now) {
   }
   Request& request = requests_.at(first->id);
   Host& host = *request.host;
-  if (host.breaker.state() == CircuitBreaker::State::Down) {
-    host.breaker.beginProbe();
+  if (host.breaker.state() != CircuitBreaker::State::Up) {
+    host.breaker.beginProbe(now);
     host.probe = first->id;
   }
   host.waiting.erase(*first);
@@ -139,7 +137,7 @@ std::optional<RequestQueue::TimePoint> RequestQueue::wakeAt(TimePoint now) const
     if (!host.delayed.empty()) {
       consider(host.delayed.begin()->first);
     }
-    if (!host.waiting.empty() && host.breaker.state() == CircuitBreaker::State::Down) {
+    if (!host.waiting.empty() && host.breaker.state() != CircuitBreaker::State::Up) {
       consider(host.breaker.pauseEnd());
     }
   }

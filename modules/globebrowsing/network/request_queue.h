@@ -49,7 +49,7 @@ class RequestQueue {
   void add(Id id, const std::string& host, double priority, bool isPatient = true);
   void setPriority(Id id, double priority);
   /// In whatever state it is.
-  void remove(Id id);
+  void remove(Id id, TimePoint now);
 
   /// The request to send now, which counts as running; nothing when none may be sent.
   std::optional<Id> start(TimePoint now);

@@ -35,8 +35,9 @@ TEST(CircuitBreaker, LetsOneThroughAfterThePause) {
   CircuitBreaker breaker = downBreaker();
   EXPECT_FALSE(breaker.mayProbe(start + milliseconds(999)));
   EXPECT_TRUE(breaker.mayProbe(start + milliseconds(1000)));
-  breaker.beginProbe();
-  EXPECT_FALSE(breaker.mayProbe(start + milliseconds(5000)));
+  breaker.beginProbe(start + milliseconds(1000));
+  EXPECT_FALSE(breaker.mayProbe(start + milliseconds(4999)));
+  EXPECT_TRUE(breaker.mayProbe(start + milliseconds(5000))) << "it hangs";
   breaker.succeeded();
   EXPECT_EQ(breaker.state(), State::Up);
 }
@@ -47,7 +48,7 @@ TEST(CircuitBreaker, PausesTwiceAsLongUpToTheMaximumAndForgetsWhenItIsUp) {
   for (const int expected : {1000, 2000, 4000, 4000, 4000}) {
     EXPECT_EQ(breaker.pauseEnd() - now, milliseconds(expected));
     now = breaker.pauseEnd();
-    breaker.beginProbe();
+    breaker.beginProbe(now);
     breaker.failed(true, now, 0.0);
   }
   breaker.succeeded();
@@ -71,7 +72,7 @@ TEST(CircuitBreaker, WhatWasUnderWayWhenItWentDownSaysNothingNew) {
   const auto end = breaker.pauseEnd();
   breaker.failed(false, start + milliseconds(500), 0.0);
   EXPECT_EQ(breaker.pauseEnd(), end);
-  breaker.beginProbe();
+  breaker.beginProbe(start + milliseconds(1000));
   breaker.failed(false, start + milliseconds(1500), 0.0);
   EXPECT_EQ(breaker.state(), State::Probing);
   breaker.succeeded();  // a late success is one
@@ -91,9 +92,12 @@ TEST(CircuitBreaker, PausesForAsLongAsTheServerAsks) {
 
 TEST(CircuitBreaker, AnAbandonedProbeMakesRoomForAnother) {
   CircuitBreaker breaker = downBreaker();
-  breaker.beginProbe();
-  breaker.abandonProbe();
-  EXPECT_TRUE(breaker.mayProbe(start + milliseconds(1000)));
+  breaker.beginProbe(start + milliseconds(1000));
+  breaker.abandonProbe(start + milliseconds(1100));
+  EXPECT_TRUE(breaker.mayProbe(start + milliseconds(1100)));
+  breaker.succeeded();
+  breaker.abandonProbe(start + milliseconds(1200));
+  EXPECT_EQ(breaker.state(), State::Up);
 }
 
 }  // namespace

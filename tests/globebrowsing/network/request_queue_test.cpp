@@ -198,8 +198,29 @@ TEST_F(RequestQueueTest, ACancelledProbeMakesRoomForTheNext) {
   now += milliseconds(1000);
   const Ids probe = startAll(queue);
   ASSERT_EQ(probe.size(), 1U);
-  queue.remove(probe.front());
+  queue.remove(probe.front(), now);
   EXPECT_EQ(startAll(queue).size(), 1U);
+}
+
+TEST_F(RequestQueueTest, AProbeThatHangsDoesNotKeepTheNextFromGoing) {
+  RequestQueue queue = make(4, 4);
+  for (RequestQueue::Id id = 1; id <= 6; ++id) {
+    queue.add(id, "a", 1.0);
+  }
+  for (const RequestQueue::Id id : startAll(queue)) {
+    fail(queue, id);
+  }
+  now += milliseconds(1000);
+  const Ids hanging = startAll(queue);
+  ASSERT_EQ(hanging.size(), 1U);
+  EXPECT_EQ(queue.wakeAt(now), now + milliseconds(4000));
+  now += milliseconds(4000);
+  const Ids second = startAll(queue);
+  ASSERT_EQ(second.size(), 1U);
+  queue.finish(second.front(), {}, now);
+  EXPECT_TRUE(fail(queue, hanging.front()));
+  EXPECT_TRUE(queue.mayAsk("a", now));
+  EXPECT_EQ(startAll(queue).size(), 4U);
 }
 
 TEST_F(RequestQueueTest, RemovesInAnyState) {
@@ -210,10 +231,10 @@ TEST_F(RequestQueueTest, RemovesInAnyState) {
   }
   startAll(queue);
   EXPECT_TRUE(fail(queue, 1, Outcome::ServerError));
-  queue.remove(1);  // delayed
-  queue.remove(2);  // running
-  queue.remove(3);  // waiting
-  queue.remove(3);
+  queue.remove(1, now);  // delayed
+  queue.remove(2, now);  // running
+  queue.remove(3, now);  // waiting
+  queue.remove(3, now);
   EXPECT_EQ(queue.size(), 0U);
   EXPECT_EQ(queue.running(), 0U);
   now += milliseconds(5000);
