@@ -64,6 +64,7 @@ TEST(HttpFetcherThreads, NoCallbackAfterItsRequestHasGone) {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
       }
     }
+    EXPECT_TRUE(eventually([&] { return answers > 0; }));  // the last ones are still wanted
   };
   std::vector<std::thread> threads;
   for (unsigned seed = 1; seed <= 4; ++seed) {
@@ -74,7 +75,6 @@ TEST(HttpFetcherThreads, NoCallbackAfterItsRequestHasGone) {
   }
   EXPECT_TRUE(eventually([&] { return fetcher.statistics().cancelled + answers == 6000; }))
       << "each is answered or cancelled, never both";
-  EXPECT_GT(answers, 0U);
   EXPECT_EQ(fetcher.statistics().requests, 6000U);
   EXPECT_TRUE(eventually([&] { return fetcher.statistics().waiting + fetcher.statistics().running == 0; }));
 }
