@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,12 @@ struct FetchRequest {
   std::size_t maximumBytes = std::size_t{32} << 20;  ///< after decoding of the content encoding
   /// Statuses that say "nothing here": not an error, and remembered for a while. 204 always is one.
   std::vector<int> emptyStatuses{404};
+  /// While its server is down it waits, as a tile should; otherwise that is an error, for what somebody sits and waits
+  /// for.
+  bool isPatient = true;
 };
+
+struct AnswerOrigin;
 
 /// An answer. Its body is immutable and may be held as long as anybody likes.
 struct Fetched {
@@ -28,9 +34,13 @@ struct Fetched {
   std::shared_ptr<const std::vector<std::uint8_t>> body{};  ///< null when there is nothing at that address
   bool isFromCache = false;
   bool isStale = false;  ///< past its lifetime, and served because the server could not be asked
+  /// What a cache has to know of an answer from a server, for Fetcher::accept. Null in all others.
+  std::shared_ptr<const AnswerOrigin> origin{};
 };
 
 /// A request under way; destroying it cancels: its `done` is not called any more once the destructor has returned.
+/// Safe from any thread, and from within any `done`. When `done` runs on another thread just then, the destructor waits
+/// for it: so never destroy one under a lock that its `done` takes. It may outlive its fetcher.
 class PendingFetch {
  public:
   PendingFetch() = default;
@@ -38,6 +48,8 @@ class PendingFetch {
   PendingFetch& operator=(const PendingFetch&) = delete;
   virtual ~PendingFetch() = default;
   virtual void setPriority(double priority) = 0;
+  /// Why it is not there yet, if it has failed before and waits to be tried again.
+  [[nodiscard]] virtual std::optional<Error> lastFailure() const { return std::nullopt; }
 };
 
 /// Gets what lies at an address without blocking anybody: from a cache, from a server, from a test. Safe from any
@@ -49,7 +61,9 @@ class Fetcher {
   virtual ~Fetcher() = default;
 
   /// `done` is called once, on a thread of the fetcher's, and must be quick; it may start or cancel other requests, but
-  /// not destroy the fetcher. An error is final for this request: what can be tried again was.
+  /// not destroy the fetcher. An error is final for this request: what can be tried again was. While its server is
+  /// down a patient request waits for as long as somebody holds it. A fetcher that is destroyed cancels all its
+  /// requests.
   [[nodiscard]] virtual std::unique_ptr<PendingFetch> fetch(FetchRequest request, Done done) = 0;
 
   /// The body turned out to be what was asked for; only now may it be kept on disk. Of an answer from the cache: no

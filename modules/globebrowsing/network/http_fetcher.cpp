@@ -1,0 +1,557 @@
+#include "globebrowsing/network/http_fetcher.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <random>
+#include <string>
+#include <thread>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <pthread.h>
+#include <signal.h>
+
+#include "globebrowsing/network/cache_worker.h"
+#include "globebrowsing/network/delivery.h"
+#include "globebrowsing/network/http_transfers.h"
+#include "globebrowsing/network/mailbox.h"
+#include "globebrowsing/network/negative_cache.h"
+#include "globebrowsing/network/request_queue.h"
+#include "globebrowsing/network/web_address.h"
+
+namespace meridian::globebrowsing {
+
+/// Of an answer that may be accepted: what goes onto disk with its body.
+struct AnswerOrigin {
+  std::string key;
+  int status = 0;
+  AnswerFacts facts{};
+  mutable std::atomic<bool> isAccepted{false};  ///< requests that shared a transfer share this
+};
+
+namespace {
+
+/// The status that a rejected address answers with from then on.
+constexpr int nothingHere = 204;
+
+/// One call of fetch.
+struct Waiter {
+  Waiter(Fetcher::Done done, double wanted) : delivery(std::move(done)), priority(wanted) {}
+
+  Delivery delivery;
+  std::atomic<double> priority;
+  std::atomic<bool> isRenewed{false};  ///< a task that looks at the new priority is on its way
+  RequestQueue::Id flight = 0;         ///< the network thread's; 0 while there is none
+};
+
+/// Requests that may share a transfer and its answer.
+struct Flight {
+  FetchRequest request;
+  WebAddress address{};
+  std::string key{};       ///< in the caches
+  std::string identity{};  ///< in `flightOf`
+  std::vector<std::shared_ptr<Waiter>> waiters{};
+  std::optional<CachedAnswer> kept{};  ///< past its lifetime
+  bool isQueued = false;               ///< else it waits for the cache
+  int attempts = 0;
+};
+
+/// In the order of greatness, whatever it is.
+double orderable(double priority) {
+  return std::isnan(priority) ? -std::numeric_limits<double>::infinity() : priority;
+}
+
+double greatestPriority(const Flight& flight) {
+  double greatest = -std::numeric_limits<double>::infinity();
+  for (const auto& waiter : flight.waiters) {
+    greatest = std::max(greatest, waiter->priority.load());
+  }
+  return greatest;
+}
+
+std::string cacheKey(const WebAddress& address, const FetchRequest& request) {
+  std::string key = address.url;
+  for (const std::string& header : request.headers) {
+    key += '\n' + header;
+  }
+  return key;
+}
+
+std::string identityOf(const std::string& key, const FetchRequest& request) {
+  std::string identity = key + '\n' + std::to_string(request.maximumBytes) + (request.isPatient ? "" : " !");
+  for (const int status : request.emptyStatuses) {
+    identity += ' ' + std::to_string(status);
+  }
+  return identity;
+}
+
+bool isEmptyStatus(const FetchRequest& request, int status) {
+  return status == nothingHere ||
+         std::find(request.emptyStatuses.begin(), request.emptyStatuses.end(), status) != request.emptyStatuses.end();
+}
+
+std::string contentTypeOf(const AnswerFacts& facts) {
+  return std::string(facts.fields.find("Content-Type").value_or(""));
+}
+
+Fetched fetchedFromCache(const CachedAnswer& kept, bool isStale) {
+  return {.contentType = contentTypeOf(kept.facts), .body = kept.body, .isFromCache = true, .isStale = isStale};
+}
+
+}  // namespace
+
+/// What the network thread owns and does. The functions of the first part are for any thread.
+class HttpFetcher::Engine {
+ public:
+  explicit Engine(NetworkOptions options);
+  ~Engine();
+
+  std::unique_ptr<PendingFetch> fetch(FetchRequest request, Done done);
+  void accept(const Fetched& answer);
+  void reject(const FetchRequest& request);
+  void setCacheMode(CacheMode mode);
+  void setCacheSize(std::uint64_t bytes);
+  void drainCache() { cache_.drain(); }
+  [[nodiscard]] const NetworkStatistics& statistics() const { return statistics_; }
+
+ private:
+  class Handle;
+  using Id = RequestQueue::Id;
+  using Clock = std::chrono::steady_clock;
+
+  void run();
+  void begin(FetchRequest request, const std::shared_ptr<Waiter>& waiter);
+  void renew(const std::shared_ptr<Waiter>& waiter);
+  void cancel(const std::shared_ptr<Waiter>& waiter);
+
+  void lookUp(Id id, Flight& flight);
+  void found(Id id, std::optional<CachedAnswer> kept);
+  void enqueue(Id id, Flight& flight);
+  void startTransfers();
+  void ended(TransferEnding ending);
+  void answered(Id id, TransferEnding& ending);
+  void failed(Id id, TransferFailure failure, const HeaderFields& fields);
+  void serveStale(Id id);
+  void serveStaleOf(const std::string& host);
+  void finish(Id id, const Result<Fetched>& result);
+  Flight take(Id id);
+  void updateGauges();
+  [[nodiscard]] bool mayServeStale(const Flight& flight) const;
+
+  NetworkOptions options_;
+  NetworkStatistics statistics_;
+  std::atomic<CacheMode> cacheMode_;
+  std::atomic<bool> stopping_{false};
+  HttpTransfers transfers_;
+  std::shared_ptr<Mailbox> mailbox_;
+  CacheWorker cache_;
+
+  // The network thread's.
+  RequestQueue queue_;
+  NegativeCache negatives_;
+  std::unordered_map<Id, Flight> flights_;
+  std::unordered_map<std::string, Id> flightOf_;  ///< by identity
+  Id lastId_ = 0;
+  std::thread thread_;
+};
+
+/// What a caller holds.
+class HttpFetcher::Engine::Handle final : public PendingFetch {
+ public:
+  Handle(Engine& engine, std::shared_ptr<Waiter> waiter)
+      : engine_(&engine), mailbox_(engine.mailbox_), waiter_(std::move(waiter)) {}
+  ~Handle() override {
+    if (waiter_->delivery.cancel()) {
+      mailbox_->post([engine = engine_, waiter = waiter_] { engine->cancel(waiter); });
+    }
+  }
+
+  void setPriority(double priority) override {
+    priority = orderable(priority);
+    // Many change every frame: no waking for it, and not more than one task each.
+    if (waiter_->priority.exchange(priority) != priority && !waiter_->isRenewed.exchange(true)) {
+      mailbox_->post([engine = engine_, waiter = waiter_] { engine->renew(waiter); }, false);
+    }
+  }
+
+  [[nodiscard]] std::optional<Error> lastFailure() const override { return waiter_->delivery.lastFailure(); }
+
+ private:
+  Engine* engine_;  ///< touched by tasks only, which run while it lives
+  std::shared_ptr<Mailbox> mailbox_;
+  std::shared_ptr<Waiter> waiter_;
+};
+
+HttpFetcher::Engine::Engine(NetworkOptions options)
+    : options_(std::move(options)),
+      cacheMode_(options_.cache.mode),
+      transfers_(options_, statistics_),
+      mailbox_(std::make_shared<Mailbox>([this] { transfers_.wake(); })),
+      cache_(options_.cache, statistics_),
+      queue_(options_.concurrency, options_.retry,
+             [random = std::mt19937_64(std::random_device{}())]() mutable {
+               return std::uniform_real_distribution<double>(0.0, 1.0)(random);
+             }),
+      negatives_(options_.cache.negativeLifetime, options_.cache.maximumNegatives),
+      thread_([this] { run(); }) {}
+
+HttpFetcher::Engine::~Engine() {
+  stopping_ = true;
+  transfers_.wake();
+  thread_.join();
+  mailbox_->close();
+  for (auto& [id, flight] : flights_) {
+    for (const auto& waiter : flight.waiters) {
+      waiter->delivery.cancel();
+    }
+  }
+}
+
+std::unique_ptr<PendingFetch> HttpFetcher::Engine::fetch(FetchRequest request, Done done) {
+  ++statistics_.requests;
+  auto waiter = std::make_shared<Waiter>(std::move(done), orderable(request.priority));
+  mailbox_->post([this, request = std::move(request), waiter]() mutable { begin(std::move(request), waiter); });
+  return std::make_unique<Handle>(*this, std::move(waiter));
+}
+
+void HttpFetcher::Engine::accept(const Fetched& answer) {
+  if (answer.origin == nullptr || answer.body == nullptr || cacheMode_ != CacheMode::ReadWrite ||
+      !isStorable(answer.origin->status, answer.origin->facts.fields) || answer.origin->isAccepted.exchange(true)) {
+    return;
+  }
+  cache_.store(answer.origin->key, {answer.origin->facts, answer.body});
+}
+
+void HttpFetcher::Engine::reject(const FetchRequest& request) {
+  const auto address = parseWebAddress(request.url);
+  if (!address) {
+    return;
+  }
+  std::string key = cacheKey(*address, request);
+  if (cacheMode_ == CacheMode::ReadWrite) {
+    cache_.remove(key);
+  }
+  mailbox_->post([this, key = std::move(key)] { negatives_.add(key, nothingHere, Clock::now()); });
+}
+
+void HttpFetcher::Engine::setCacheMode(CacheMode mode) {
+  cacheMode_ = mode;
+  cache_.setMode(mode);
+}
+
+void HttpFetcher::Engine::setCacheSize(std::uint64_t bytes) {
+  cache_.setMaximumBytes(bytes);
+}
+
+void HttpFetcher::Engine::run() {
+  // curl writes to connections that others have closed; told to use no signals it leaves this one to us.
+  sigset_t pipe;
+  sigemptyset(&pipe);
+  sigaddset(&pipe, SIGPIPE);
+  pthread_sigmask(SIG_BLOCK, &pipe, nullptr);
+
+  std::vector<TransferEnding> endings;
+  while (!stopping_) {
+    for (const Mailbox::Task& task : mailbox_->take()) {
+      task();
+    }
+    startTransfers();
+    updateGauges();
+    const auto now = Clock::now();
+    auto timeout = std::chrono::milliseconds(60'000);
+    if (const auto wake = queue_.wakeAt(now)) {
+      timeout = std::min(timeout, std::chrono::ceil<std::chrono::milliseconds>(*wake - now));
+    }
+    transfers_.run(timeout, endings);
+    for (TransferEnding& ending : endings) {
+      ended(std::move(ending));
+    }
+    endings.clear();
+  }
+}
+
+void HttpFetcher::Engine::begin(FetchRequest request, const std::shared_ptr<Waiter>& waiter) {
+  auto address = parseWebAddress(request.url);
+  if (!address) {
+    ++statistics_.failures;
+    waiter->delivery.deliver(tl::make_unexpected(std::move(address.error())));
+    return;
+  }
+  std::string key = cacheKey(*address, request);
+  if (const auto status = negatives_.find(key, Clock::now()); status && isEmptyStatus(request, *status)) {
+    ++statistics_.negativeHits;
+    waiter->delivery.deliver(Fetched{.status = *status});
+    return;
+  }
+  std::string identity = identityOf(key, request);
+  const auto [place, isNew] = flightOf_.try_emplace(identity, lastId_ + 1);
+  const Id id = place->second;
+  waiter->flight = id;
+  if (!isNew) {
+    ++statistics_.joined;
+    flights_.at(id).waiters.push_back(waiter);
+    renew(waiter);
+    return;
+  }
+  ++lastId_;
+  Flight& flight = flights_.emplace(id, Flight{.request = std::move(request)}).first->second;
+  flight.address = std::move(*address);
+  flight.key = std::move(key);
+  flight.identity = std::move(identity);
+  flight.waiters.push_back(waiter);
+  lookUp(id, flight);
+}
+
+void HttpFetcher::Engine::renew(const std::shared_ptr<Waiter>& waiter) {
+  waiter->isRenewed = false;
+  const auto place = flights_.find(waiter->flight);
+  if (place != flights_.end() && place->second.isQueued) {
+    queue_.setPriority(place->first, greatestPriority(place->second));
+  }
+}
+
+void HttpFetcher::Engine::cancel(const std::shared_ptr<Waiter>& waiter) {
+  ++statistics_.cancelled;
+  const auto place = flights_.find(waiter->flight);
+  if (place == flights_.end()) {
+    return;
+  }
+  std::erase(place->second.waiters, waiter);
+  if (place->second.waiters.empty()) {
+    const Id id = place->first;
+    queue_.remove(id, Clock::now());
+    transfers_.cancel(id);
+    take(id);
+  } else {
+    renew(waiter);
+  }
+}
+
+void HttpFetcher::Engine::lookUp(Id id, Flight& flight) {
+  if (cacheMode_ == CacheMode::Off || options_.cache.folder.empty()) {
+    found(id, std::nullopt);
+    return;
+  }
+  cache_.find(flight.key, [this, id](std::optional<CachedAnswer> kept) {
+    mailbox_->post([this, id, kept = std::move(kept)]() mutable { found(id, std::move(kept)); });
+  });
+}
+
+void HttpFetcher::Engine::found(Id id, std::optional<CachedAnswer> kept) {
+  const auto place = flights_.find(id);
+  if (place == flights_.end()) {
+    return;  // cancelled meanwhile
+  }
+  Flight& flight = place->second;
+  if (kept && kept->body->size() > flight.request.maximumBytes) {
+    kept.reset();
+  }
+  const bool isGood = kept && isFresh(kept->facts, options_.cache.rules, std::time(nullptr));
+  if (isGood || (kept && cacheMode_ == CacheMode::CacheOnly)) {
+    ++statistics_.cacheHits;
+    finish(id, fetchedFromCache(*kept, !isGood));
+    return;
+  }
+  if (cacheMode_ == CacheMode::CacheOnly) {
+    finish(id, failure("it is not in the cache, and no server is asked in the cache mode cache-only",
+                       flight.request.url, "go online: unset MERIDIAN_OFFLINE and MERIDIAN_CACHE_MODE"));
+    return;
+  }
+  flight.kept = std::move(kept);
+  const bool isDown = !queue_.mayAsk(flight.address.host, Clock::now());
+  if (isDown && mayServeStale(flight)) {
+    serveStale(id);
+    return;
+  }
+  if (isDown && !flight.request.isPatient) {
+    finish(id, failure("its server does not answer at the moment", flight.request.url,
+                       "try again later, or check the network"));
+    return;
+  }
+  enqueue(id, flight);
+}
+
+void HttpFetcher::Engine::enqueue(Id id, Flight& flight) {
+  flight.isQueued = true;
+  queue_.add(id, flight.address.host, greatestPriority(flight), flight.request.isPatient);
+}
+
+void HttpFetcher::Engine::startTransfers() {
+  while (const auto id = queue_.start(Clock::now())) {
+    Flight& flight = flights_.at(*id);
+    if (++flight.attempts > 1) {
+      ++statistics_.retries;
+    }
+    TransferRequest transfer{flight.address, flight.request.headers, flight.request.maximumBytes};
+    if (flight.kept) {
+      for (std::string& header : conditionalHeaders(flight.kept->facts)) {
+        transfer.headers.push_back(std::move(header));
+      }
+    }
+    transfers_.start(*id, std::move(transfer));
+  }
+}
+
+void HttpFetcher::Engine::ended(TransferEnding ending) {
+  const Id id = ending.id;
+  const auto place = flights_.find(id);
+  if (place == flights_.end()) {
+    return;  // cancelled by a `done` of the same round
+  }
+  const Flight& flight = place->second;
+  if (ending.isMultiplexed) {
+    queue_.setMultiplexed(flight.address.host);
+  }
+  if (ending.status == 0) {
+    failed(id, std::move(ending.failure), {});
+    return;
+  }
+  const bool isSuccess = ending.status >= 200 && ending.status < 300;
+  const bool isStillGood = ending.status == 304 && flight.kept;
+  if (isSuccess || isStillGood || isEmptyStatus(flight.request, ending.status)) {
+    answered(id, ending);
+    return;
+  }
+  TransferFailure failure = failureOfStatus(ending.status, flight.request.url);
+  if (failure.outcome == Outcome::Done) {
+    failure.outcome = Outcome::Final;  // a 304 that nobody asked for
+  }
+  failed(id, std::move(failure), ending.facts.fields);
+}
+
+void HttpFetcher::Engine::answered(Id id, TransferEnding& ending) {
+  queue_.finish(id, {Outcome::Done}, Clock::now());
+  Flight& flight = flights_.at(id);
+  if (isEmptyStatus(flight.request, ending.status)) {
+    negatives_.add(flight.key, ending.status, Clock::now());
+    if (flight.kept && cacheMode_ == CacheMode::ReadWrite) {
+      cache_.remove(flight.key);
+    }
+    finish(id, Fetched{.status = ending.status, .contentType = contentTypeOf(ending.facts)});
+    return;
+  }
+  if (ending.status == 304) {
+    ++statistics_.revalidated;
+    if (cacheMode_ == CacheMode::ReadWrite) {
+      cache_.refresh(flight.key, refreshed(flight.kept->facts, ending.facts));
+    }
+    finish(id, fetchedFromCache(*flight.kept, false));
+    return;
+  }
+  auto origin = std::make_shared<AnswerOrigin>();
+  origin->key = flight.key;
+  origin->status = ending.status;
+  Fetched fetched{.status = ending.status, .contentType = contentTypeOf(ending.facts)};
+  fetched.body = std::make_shared<const std::vector<std::uint8_t>>(std::move(ending.body));
+  origin->facts = std::move(ending.facts);
+  fetched.origin = std::move(origin);
+  finish(id, std::move(fetched));
+}
+
+void HttpFetcher::Engine::failed(Id id, TransferFailure failure, const HeaderFields& fields) {
+  Flight& flight = flights_.at(id);
+  const std::string host = flight.address.host;
+  RequestQueue::Ending ending{failure.outcome};
+  if (const auto wait = fields.find("Retry-After"); wait && failure.outcome != Outcome::Final) {
+    ending.retryAfter = retryAfter(options_.retry, *wait, std::time(nullptr));
+  }
+  const bool isTriedAgain = queue_.finish(id, ending, Clock::now());
+  if (failure.outcome != Outcome::Final && mayServeStale(flight)) {
+    queue_.remove(id, Clock::now());
+    serveStale(id);
+  } else if (isTriedAgain) {
+    for (const auto& waiter : flight.waiters) {
+      waiter->delivery.setLastFailure(failure.error);
+    }
+  } else {
+    finish(id, tl::make_unexpected(std::move(failure.error)));
+  }
+  if (!queue_.mayAsk(host, Clock::now())) {
+    serveStaleOf(host);
+  }
+}
+
+bool HttpFetcher::Engine::mayServeStale(const Flight& flight) const {
+  return flight.kept && globebrowsing::mayServeStale(flight.kept->facts, options_.cache.rules, std::time(nullptr));
+}
+
+void HttpFetcher::Engine::serveStale(Id id) {
+  ++statistics_.stale;
+  finish(id, fetchedFromCache(*flights_.at(id).kept, true));
+}
+
+/// What waits for a server that has turned out to be down, and need not.
+void HttpFetcher::Engine::serveStaleOf(const std::string& host) {
+  std::vector<Id> served;
+  for (const auto& [id, flight] : flights_) {
+    if (flight.isQueued && flight.address.host == host && mayServeStale(flight)) {
+      served.push_back(id);
+    }
+  }
+  for (const Id id : served) {
+    queue_.remove(id, Clock::now());
+    transfers_.cancel(id);
+    serveStale(id);
+  }
+}
+
+void HttpFetcher::Engine::finish(Id id, const Result<Fetched>& result) {
+  const Flight flight = take(id);
+  for (const auto& waiter : flight.waiters) {
+    statistics_.failures += result ? 0U : 1U;
+    waiter->delivery.deliver(result);
+  }
+}
+
+Flight HttpFetcher::Engine::take(Id id) {
+  const auto place = flights_.find(id);
+  Flight flight = std::move(place->second);
+  flights_.erase(place);
+  flightOf_.erase(flight.identity);
+  return flight;
+}
+
+void HttpFetcher::Engine::updateGauges() {
+  statistics_.running = queue_.running();
+  statistics_.waiting = flights_.size() - queue_.running();
+  statistics_.hostsDown = queue_.hostsDown();
+}
+
+HttpFetcher::HttpFetcher(NetworkOptions options) : engine_(std::make_unique<Engine>(std::move(options))) {}
+
+HttpFetcher::~HttpFetcher() = default;
+
+std::unique_ptr<PendingFetch> HttpFetcher::fetch(FetchRequest request, Done done) {
+  return engine_->fetch(std::move(request), std::move(done));
+}
+
+void HttpFetcher::accept(const FetchRequest&, const Fetched& answer) {
+  engine_->accept(answer);
+}
+
+void HttpFetcher::reject(const FetchRequest& request) {
+  engine_->reject(request);
+}
+
+void HttpFetcher::setCacheMode(CacheMode mode) {
+  engine_->setCacheMode(mode);
+}
+
+void HttpFetcher::setCacheSize(std::uint64_t maximumBytes) {
+  engine_->setCacheSize(maximumBytes);
+}
+
+void HttpFetcher::drainCache() {
+  engine_->drainCache();
+}
+
+const NetworkStatistics& HttpFetcher::statistics() const {
+  return engine_->statistics();
+}
+
+}  // namespace meridian::globebrowsing
