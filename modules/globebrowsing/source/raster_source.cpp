@@ -108,4 +108,14 @@ bool RasterSource::hasDataFiner(const Tiling& tiling, const TileIndex& index, co
   return info().finestPixelAngle < 0.99 * nominalSpacing(tiling, index, layout) && overlaps(tiling, index);
 }
 
+Result<ColourPixels> RasterSource::colours(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
+                                           std::stop_token stop) const {
+  return resampleColours(*this, tiling, index, layout, std::move(stop));
+}
+
+Result<HeightPixels> RasterSource::heights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
+                                           std::stop_token stop) const {
+  return resampleHeights(*this, tiling, index, layout, std::move(stop));
+}
+
 }  // namespace meridian::globebrowsing

@@ -4,9 +4,13 @@
 #include <stop_token>
 #include <vector>
 
-#include "globebrowsing/source/raster_source.h"
+#include "globebrowsing/source/tile_layout.h"
+#include "globebrowsing/tiling/tiling.h"
+#include "host/api/error.h"
 
 namespace meridian::globebrowsing {
+
+class RasterSource;
 
 /// A tile's colours: size x size pixels of 4 bytes (red, green, blue, alpha; not premultiplied), north row first.
 struct ColourPixels {

@@ -38,6 +38,10 @@ struct SampleSpacing {
 /// For a sample at a place of full resolution.
 [[nodiscard]] Sampling chooseSampling(const Pyramid& pyramid, const SampleSpacing& spacing, double column, double row);
 
+/// Whether the picture, which is chosen by place, has finer pixels there than samples are apart; a projected one,
+/// anywhere.
+[[nodiscard]] bool isFinerAt(const Pyramid& pyramid, const SampleSpacing& spacing, const GeodeticPosition& place);
+
 /// Whether the picture reaches into the tile; may be true for a near miss, never false for a hit.
 [[nodiscard]] bool reaches(const RasterGeoreference& georeference, const Tiling& tiling, const TileIndex& index);
 

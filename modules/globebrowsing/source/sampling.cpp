@@ -87,4 +87,17 @@ Sampling chooseSampling(const Pyramid& pyramid, const SampleSpacing& spacing, do
   return chooseByArea(pyramid, {angle, angle}, spacing.nominal, spacing.nominal);
 }
 
+bool isFinerAt(const Pyramid& pyramid, const SampleSpacing& spacing, const GeodeticPosition& place) {
+  const RasterGeoreference& georeference = pyramid.georeference;
+  if (!georeference.isGeographic()) {
+    return georeference.finestPixelAngle() < 0.99 * spacing.nominal;
+  }
+  const double latitude = std::clamp(place.latitude, georeference.south(), georeference.north());
+  const double height = georeference.pixelHeightAngle() * (georeference.isMercator() ? std::cos(latitude) : 1.0);
+  // Near a pole, degrees are sampled from coarser levels; some levels further, finer ones come into their own.
+  constexpr double enough = 8.0;
+  return chooseSampling(pyramid, spacing, latitude).level > 0 ? height < enough * spacing.nominal
+                                                              : height < 0.99 * spacing.nominal;
+}
+
 }  // namespace meridian::globebrowsing
