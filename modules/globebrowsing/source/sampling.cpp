@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "globebrowsing/source/resample_parts.h"
 
@@ -19,8 +20,8 @@ double roundedUp(double ratio) {
 }
 
 void stretch(Sampling& sampling, const PyramidLevel& level, const Sides& pixel, const Sides& step) {
-  sampling.stretchX = std::max(1.0, step.width / (pixel.width * level.scaleX));
-  sampling.stretchY = std::max(1.0, step.height / (pixel.height * level.scaleY));
+  sampling.stretchX = std::clamp(step.width / (pixel.width * level.scaleX), 1.0, widestTriangle);
+  sampling.stretchY = std::clamp(step.height / (pixel.height * level.scaleY), 1.0, widestTriangle);
 }
 
 /// The coarsest level whose pixels cover no more than a sample does. In degrees, pixels towards a pole become ever
@@ -67,10 +68,10 @@ Sampling chooseSampling(const Pyramid& pyramid, const SampleSpacing& spacing, do
     return chooseSampling(pyramid, spacing);
   }
   // At a pole itself a pixel would be of no width; as wide as this many samples away from it.
-  constexpr double polarSamples = 128.0;
+  constexpr double polarSamples = 32.0;
   const RasterGeoreference& georeference = pyramid.georeference;
-  const double narrowing =
-      std::min(1.0, roundedUp(std::max(std::cos(latitude), std::sin(polarSamples * spacing.nominal))));
+  const double narrowest = std::sin(std::min(polarSamples * spacing.nominal, std::numbers::pi / 2));
+  const double narrowing = std::min(1.0, roundedUp(std::max(std::cos(latitude), narrowest)));
   const Sides pixel{georeference.pixelWidthAngle() * narrowing,
                     georeference.pixelHeightAngle() * (georeference.isMercator() ? narrowing : 1.0)};
   return chooseByArea(pyramid, pixel, spacing.nominal,

@@ -62,6 +62,15 @@ void TilePlan::note(std::size_t level, const UnboundedWindow& window) {
   if (last_ != nullptr && last_->level == level && contains(last_->pixels, window)) {
     return;
   }
+  // Before a window is looked at closely, which takes as long as it is large.
+  const double across = double{1.0} * window.width / pyramid_.tileWidth(level);
+  const double down = double{1.0} * window.height / pyramid_.tileHeight(level);
+  isGivenUp_ = isGivenUp_ || tiles_.size() > mostTiles || std::max(across, 1.0) * std::max(down, 1.0) > mostTiles;
+  if (isGivenUp_) {
+    tiles_.clear();
+    last_ = nullptr;
+    return;
+  }
   for (const WindowPiece& piece : piecesOf(pyramid(), level, window)) {
     pyramid_.forEachTile(level, piece.from, [&](const TilePart& part) {
       const auto [found, isNew] = tiles_.try_emplace(part.address);
@@ -80,9 +89,17 @@ void TilePlan::note(std::size_t level, const UnboundedWindow& window) {
 
 void TilePlan::addStandIns(PixelKind kind) {
   // Stand-ins are of coarser levels only, and are looked at again when they turn out to be absent too.
-  for (bool isChanged = true; isChanged;) {
+  for (bool isChanged = true; isChanged && !isGivenUp_;) {
     isChanged = false;
+    std::vector<PlannedTile*> known;  // a map's elements stay where they are
     for (auto& [address, tile] : tiles_) {
+      known.push_back(&tile);
+    }
+    for (PlannedTile* one : known) {
+      PlannedTile& tile = *one;
+      if (isGivenUp_) {
+        return;
+      }
       if (!tile.isAbsent || tile.standIn == tile.pixels || tile.level + 1 >= pyramid().levels.size()) {
         continue;
       }

@@ -20,8 +20,12 @@ struct PlannedTile {
 using PlannedTiles = std::map<TileAddress, PlannedTile>;
 
 /// Which source tiles a tile needs: resampling with this reader notes them, and their needed parts, instead of reading.
+/// A plan of more than `mostTiles` is given up: the coarsest matrix is much finer than the tile, and services that
+/// begin so deep show nothing from farther away.
 class TilePlan final : public PixelReader {
  public:
+  static constexpr std::size_t mostTiles = 512;
+
   /// `pyramid` outlives the plan.
   explicit TilePlan(const ServicePyramid& pyramid);
 
@@ -37,6 +41,7 @@ class TilePlan final : public PixelReader {
   /// tiles of which it is not known yet whether they are absent.
   void addStandIns(PixelKind kind);
 
+  /// Empty when it was given up.
   [[nodiscard]] PlannedTiles& tiles() { return tiles_; }
 
  private:
@@ -46,6 +51,7 @@ class TilePlan final : public PixelReader {
   std::unique_ptr<Projection> projection_;
   PlannedTiles tiles_;
   PlannedTile* last_ = nullptr;  ///< noted last; most samples need the same
+  bool isGivenUp_ = false;
 };
 
 /// Reads the pixels of a plan whose tiles are there or absent. What was not planned is absent as well.

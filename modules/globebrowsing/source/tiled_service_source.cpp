@@ -110,10 +110,10 @@ class ServiceTask final : public PixelTask<Pixels> {
 
   const TiledServiceSource& source_;
   TileRequest tile_;
-  TilePlan plan_;
-  bool isPlanned_ = false;
-  std::vector<TileAddress> asked_;  ///< of the last want, until its answers have been taken
   std::vector<std::unique_ptr<SourceTileStore::Want>> wants_;
+  std::vector<TileAddress> asked_;  ///< of the last want, until its answers have been taken
+  bool isPlanned_ = false;
+  TilePlan plan_;  ///< after the wants: it lets go of tiles before they are unwanted
   std::optional<Error> error_;
   std::optional<Error> flaw_;
 };
