@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "globebrowsing/providers/raw_tile_job.h"
 #include "globebrowsing/source/tile_layout.h"
 
 namespace meridian::globebrowsing {
@@ -12,23 +13,6 @@ namespace {
 
 /// Facts of tiles long gone are dropped when there are that many.
 constexpr std::size_t mostFacts = 1 << 15;
-
-class ColourJob final : public TileJob {
- public:
-  ColourJob(std::shared_ptr<TileProvider> provider, std::shared_ptr<const Tiling> tiling, const TileIndex& index)
-      : provider_(std::move(provider)), tiling_(std::move(tiling)), index_(index) {}
-
-  Result<TileDataPointer> run(const std::stop_token& stop) override {
-    return provider_->colours(*tiling_, index_, stop).map([](ColourPixels pixels) -> TileDataPointer {
-      return std::make_shared<const ColourTile>(std::move(pixels));
-    });
-  }
-
- private:
-  std::shared_ptr<TileProvider> provider_;
-  std::shared_ptr<const Tiling> tiling_;
-  TileIndex index_;
-};
 
 /// The tile's unit square in the composite's texture, whose interior lies within a border.
 glm::vec4 textureTransform(const UnitSquareTransform& transform) {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "globebrowsing/layers/compose_heights.h"
-#include "globebrowsing/providers/raw_tile.h"
+#include "globebrowsing/providers/raw_tile_job.h"
 
 namespace meridian::globebrowsing {
 
@@ -13,23 +13,6 @@ namespace {
 
 /// What is known of tiles long gone is dropped when it is of that many.
 constexpr std::size_t mostFiner = 1 << 15;
-
-class HeightJob final : public TileJob {
- public:
-  HeightJob(std::shared_ptr<TileProvider> provider, std::shared_ptr<const Tiling> tiling, const TileIndex& index)
-      : provider_(std::move(provider)), tiling_(std::move(tiling)), index_(index) {}
-
-  Result<TileDataPointer> run(const std::stop_token& stop) override {
-    return provider_->heights(*tiling_, index_, stop).map([](HeightPixels pixels) -> TileDataPointer {
-      return std::make_shared<const HeightTile>(std::move(pixels));
-    });
-  }
-
- private:
-  std::shared_ptr<TileProvider> provider_;
-  std::shared_ptr<const Tiling> tiling_;
-  TileIndex index_;
-};
 
 /// Raw heights of all layers -> one surface.
 class SurfaceJob final : public TileJob {

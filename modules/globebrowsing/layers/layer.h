@@ -18,6 +18,7 @@
 
 namespace meridian::globebrowsing {
 
+class SourceTileStore;
 class TileStreamer;
 
 /// What a layer may ask of the globe. Null pointers where nothing is drawn (--validate): providers then stay unopened
@@ -25,6 +26,7 @@ class TileStreamer;
 struct LayerServices {
   WorkerPool* workers = nullptr;
   TileStreamer* streamer = nullptr;
+  std::shared_ptr<SourceTileStore> sourceTiles{};  ///< of map services
 };
 
 /// One layer of a globe: its provider, and its properties below Layers.GROUP.IDENTIFIER. Render thread only.

@@ -198,7 +198,9 @@ Result<Layer*> LayerManager::addLayer(std::string_view groupName, const Provider
   if (!named) {
     return tl::make_unexpected(named.error());
   }
-  return readLayer(request, named->group, named->blendMode).and_then([&](LayerDescription description) {
+  ProviderRequest served = request;
+  served.sourceTiles = services_.sourceTiles;
+  return readLayer(served, named->group, named->blendMode).and_then([&](LayerDescription description) {
     return group(named->group).add(std::move(description), services_);
   });
 }

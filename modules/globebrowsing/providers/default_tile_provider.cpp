@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "globebrowsing/source/tiled_service_source.h"
+
 namespace meridian::globebrowsing {
 
 namespace {
@@ -42,6 +44,11 @@ Result<std::optional<std::array<double, 4>>> extentOf(const ProviderRequest& req
                    "give west, south, east, north in degrees, east greater than west and north greater than south");
   }
   return std::array<double, 4>{sides[0], sides[1], sides[2], sides[3]};
+}
+
+/// The map service that the data are, or nothing: what describes services from documents is joined here.
+Result<std::optional<TileService>> describeService(const DataPath& /*path*/, const RasterDescription& /*description*/) {
+  return std::nullopt;
 }
 
 }  // namespace
@@ -108,7 +115,7 @@ Result<std::shared_ptr<TileProvider>> DefaultTileProvider::make(const ProviderRe
   description.heightScale = numberAt(request.table, "HeightScale");
   description.heightOffset = numberAt(request.table, "HeightOffset");
   description.heightDatum = numberAt(request.table, "HeightDatum");
-  return std::make_shared<DefaultTileProvider>(std::move(path), std::move(description));
+  return std::make_shared<DefaultTileProvider>(std::move(path), std::move(description), request.sourceTiles);
 }
 
 Result<void> DefaultTileProvider::check() const {
@@ -116,19 +123,40 @@ Result<void> DefaultTileProvider::check() const {
 }
 
 Result<void> DefaultTileProvider::openData() {
-  return check()
-      .and_then([this] { return RasterSource::open(description_); })
-      .map([this](std::shared_ptr<RasterSource> source) { source_ = std::move(source); });
+  return check().and_then([this] { return openSource(); }).map([this](std::shared_ptr<PixelSource> source) {
+    source_ = std::move(source);
+  });
+}
+
+Result<std::shared_ptr<PixelSource>> DefaultTileProvider::openSource() const {
+  if (sourceTiles_ != nullptr) {
+    const Result<std::optional<TileService>> service = describeService(path_, description_);
+    if (!service) {
+      return tl::make_unexpected(service.error());
+    }
+    if (*service) {
+      return TiledServiceSource::make(**service, sourceTiles_);
+    }
+  }
+  return RasterSource::open(description_);
 }
 
 Result<ColourPixels> DefaultTileProvider::makeColours(const Tiling& tiling, const TileIndex& index,
                                                       std::stop_token stop) const {
-  return resampleColours(*source_, tiling, index, colourLayout, std::move(stop));
+  return source_->colours(tiling, index, colourLayout, std::move(stop));
 }
 
 Result<HeightPixels> DefaultTileProvider::makeHeights(const Tiling& tiling, const TileIndex& index,
                                                       std::stop_token stop) const {
-  return resampleHeights(*source_, tiling, index, heightLayout, std::move(stop));
+  return source_->heights(tiling, index, heightLayout, std::move(stop));
+}
+
+std::unique_ptr<ColourTask> DefaultTileProvider::makeColourTask(const Tiling& tiling, const TileIndex& index) const {
+  return source_->colourTask(tiling, index, colourLayout);
+}
+
+std::unique_ptr<HeightTask> DefaultTileProvider::makeHeightTask(const Tiling& tiling, const TileIndex& index) const {
+  return source_->heightTask(tiling, index, heightLayout);
 }
 
 bool DefaultTileProvider::dataOverlap(const Tiling& tiling, const TileIndex& index) const {

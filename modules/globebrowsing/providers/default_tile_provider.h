@@ -5,6 +5,7 @@
 
 #include "globebrowsing/providers/provider_registry.h"
 #include "globebrowsing/source/raster_source.h"
+#include "globebrowsing/source/source_tile_store.h"
 
 namespace meridian::globebrowsing {
 
@@ -22,31 +23,37 @@ struct DataPath {
 /// Of a File: that it is there and no directory. Nothing can be said of the others.
 [[nodiscard]] Result<void> checkData(const DataPath& path, const std::string& where);
 
-/// Any georeferenced raster, cut into tiles: DefaultTileProvider.
+/// Any georeferenced raster, cut into tiles, or the tiles of a map service: DefaultTileProvider.
 class DefaultTileProvider final : public TileProvider {
  public:
   /// FilePath, and ours: ExtentDegrees, HeightScale, HeightOffset, HeightDatum.
   [[nodiscard]] static const Schema& schema();
   [[nodiscard]] static Result<std::shared_ptr<TileProvider>> make(const ProviderRequest& request);
 
-  explicit DefaultTileProvider(DataPath path, RasterDescription description)
-      : path_(std::move(path)), description_(std::move(description)) {}
+  /// Without a store, map services are left to GDAL.
+  DefaultTileProvider(DataPath path, RasterDescription description, std::shared_ptr<SourceTileStore> sourceTiles)
+      : path_(std::move(path)), description_(std::move(description)), sourceTiles_(std::move(sourceTiles)) {}
 
   [[nodiscard]] Result<void> check() const override;
   [[nodiscard]] const RasterDescription& description() const { return description_; }
 
  private:
   [[nodiscard]] Result<void> openData() override;
+  /// A map service's source where the data are one, else a raster's.
+  [[nodiscard]] Result<std::shared_ptr<PixelSource>> openSource() const;
   [[nodiscard]] Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
                                                  std::stop_token stop) const override;
   [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index,
                                                  std::stop_token stop) const override;
+  [[nodiscard]] std::unique_ptr<ColourTask> makeColourTask(const Tiling& tiling, const TileIndex& index) const override;
+  [[nodiscard]] std::unique_ptr<HeightTask> makeHeightTask(const Tiling& tiling, const TileIndex& index) const override;
   [[nodiscard]] bool dataOverlap(const Tiling& tiling, const TileIndex& index) const override;
   [[nodiscard]] bool dataFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const override;
 
   DataPath path_;
   RasterDescription description_;
-  std::shared_ptr<RasterSource> source_;
+  std::shared_ptr<SourceTileStore> sourceTiles_;
+  std::shared_ptr<PixelSource> source_;
 };
 
 }  // namespace meridian::globebrowsing

@@ -13,12 +13,16 @@
 
 namespace meridian::globebrowsing {
 
+class SourceTileStore;
+
 /// What a provider is made from.
 struct ProviderRequest {
   Value table;         ///< the layer's table; the provider's keys lie flat among the layer's own
   std::string where;   ///< file and line of the asset, for errors
   std::string path;    ///< of the table within the asset: "Renderable.Layers.ColorLayers[1]"
   std::string folder;  ///< of the asset file; relative paths start there
+  /// Where the tiles of map services come from; null where nothing is fetched (--validate).
+  std::shared_ptr<SourceTileStore> sourceTiles{};
 };
 
 /// The place of a key for errors: "earth.asset:12: Renderable.Layers.ColorLayers[1].FilePath".

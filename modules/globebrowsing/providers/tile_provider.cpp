@@ -64,6 +64,14 @@ Result<void> TileProvider::requireReady() const {
   return failure("the provider is not open");
 }
 
+std::unique_ptr<ColourTask> TileProvider::colourTask(const Tiling& tiling, const TileIndex& index) const {
+  return state() == State::Ready ? makeColourTask(tiling, index) : nullptr;
+}
+
+std::unique_ptr<HeightTask> TileProvider::heightTask(const Tiling& tiling, const TileIndex& index) const {
+  return state() == State::Ready ? makeHeightTask(tiling, index) : nullptr;
+}
+
 Result<ColourPixels> TileProvider::colours(const Tiling& tiling, const TileIndex& index, std::stop_token stop) const {
   return requireReady().and_then([&] { return makeColours(tiling, index, std::move(stop)); });
 }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <stop_token>
 
-#include "globebrowsing/source/resample.h"
+#include "globebrowsing/source/pixel_source.h"
 #include "globebrowsing/streaming/worker_pool.h"
 #include "globebrowsing/tiling/tiling.h"
 #include "host/api/error.h"
@@ -39,8 +39,12 @@ class TileProvider {
   /// The same on a worker: Opening at once. A failure is logged.
   static void openOn(WorkerPool& workers, std::shared_ptr<TileProvider> provider);
 
-  /// One tile in colourLayout or heightLayout. Blocking; on a worker. Errors: not Ready; what cannot be read;
-  /// "cancelled" after a stop.
+  /// One tile in colourLayout or heightLayout, by and by: where its data come from elsewhere. Null where colours and
+  /// heights give it at once (or an error, when not Ready). Provider and tiling outlive the task.
+  [[nodiscard]] std::unique_ptr<ColourTask> colourTask(const Tiling& tiling, const TileIndex& index) const;
+  [[nodiscard]] std::unique_ptr<HeightTask> heightTask(const Tiling& tiling, const TileIndex& index) const;
+  /// The same at once. Blocking; on a worker. Errors: not Ready; what cannot be read; "cancelled" after a stop; also
+  /// where there is a task for it.
   [[nodiscard]] Result<ColourPixels> colours(const Tiling& tiling, const TileIndex& index, std::stop_token stop) const;
   [[nodiscard]] Result<HeightPixels> heights(const Tiling& tiling, const TileIndex& index, std::stop_token stop) const;
 
@@ -58,6 +62,14 @@ class TileProvider {
                                                          std::stop_token stop) const = 0;
   [[nodiscard]] virtual Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index,
                                                          std::stop_token stop) const = 0;
+  [[nodiscard]] virtual std::unique_ptr<ColourTask> makeColourTask(const Tiling& /*tiling*/,
+                                                                   const TileIndex& /*index*/) const {
+    return nullptr;
+  }
+  [[nodiscard]] virtual std::unique_ptr<HeightTask> makeHeightTask(const Tiling& /*tiling*/,
+                                                                   const TileIndex& /*index*/) const {
+    return nullptr;
+  }
   [[nodiscard]] virtual bool dataOverlap(const Tiling& tiling, const TileIndex& index) const = 0;
   [[nodiscard]] virtual bool dataFiner(const Tiling& tiling, const TileIndex& index,
                                        const TileLayout& layout) const = 0;

@@ -95,10 +95,9 @@ struct RasterAccess::Store {
 
 RasterAccess::RasterAccess(RasterDescription description, GDALDataset* dataset, RasterGeoreference georeference)
     : description_(std::move(description)),
-      where_(description_.where.empty() ? description_.path : description_.where),
-      georeference_(std::move(georeference)),
+      pyramid_{description_.where.empty() ? description_.path : description_.where, std::move(georeference)},
       pool_(std::make_shared<Pool>()) {
-  pool_->idle.push_back(std::make_unique<RasterHandle>(dataset, georeference_.projection()));
+  pool_->idle.push_back(std::make_unique<RasterHandle>(dataset, pyramid_.georeference.projection()));
 }
 
 RasterAccess::~RasterAccess() = default;
@@ -107,6 +106,9 @@ Result<void> RasterAccess::examine() {
   const GdalMessages messages;
   GDALDataset& dataset = pool_->idle.front()->dataset();
   levels_ = rasterLevels(dataset);
+  for (const RasterLevel& level : levels_) {
+    pyramid_.levels.push_back({level.width, level.height, level.scaleX, level.scaleY});
+  }
   colours_ = std::make_unique<Store<Rgba>>(levels_.size());
   heights_ = std::make_unique<Store<float>>(levels_.size());
   heightRule_ = heightRule(dataset, description_);
@@ -120,13 +122,13 @@ Result<void> RasterAccess::examine() {
   }
   info_.hasColourTable = band.GetColorTable() != nullptr;
   info_.noData = heightRule_.noData;
-  info_.west = georeference_.west();
-  info_.south = georeference_.south();
-  info_.east = georeference_.east();
-  info_.north = georeference_.north();
-  info_.coversAllLongitudes = georeference_.coversAllLongitudes();
-  info_.isGeographic = georeference_.isGeographic();
-  info_.finestPixelAngle = georeference_.finestPixelAngle();
+  info_.west = pyramid_.georeference.west();
+  info_.south = pyramid_.georeference.south();
+  info_.east = pyramid_.georeference.east();
+  info_.north = pyramid_.georeference.north();
+  info_.coversAllLongitudes = pyramid_.georeference.coversAllLongitudes();
+  info_.isGeographic = pyramid_.georeference.isGeographic();
+  info_.finestPixelAngle = pyramid_.georeference.finestPixelAngle();
   info_.heightScale = heightRule_.scale;
   info_.heightOffset = heightRule_.offset;
   return {};
@@ -137,18 +139,13 @@ Result<void> RasterAccess::prepareColours(GDALDataset& dataset) const {
   if (hasColourRule_) {
     return {};
   }
-  auto rule = colourRule(dataset, where_);
+  auto rule = colourRule(dataset, pyramid_.where);
   if (!rule) {
     return tl::make_unexpected(rule.error());
   }
   colourRule_ = std::move(*rule);
   hasColourRule_ = true;
   return {};
-}
-
-int RasterAccess::columnsOfTurn(const RasterLevel& level) const {
-  const int columns = georeference_.columnsOfTurn();
-  return columns == 0 ? 0 : std::max(1, static_cast<int>(std::lround(columns / level.scaleX)));
 }
 
 Result<std::shared_ptr<RasterHandle>> RasterAccess::borrow() const {
@@ -164,12 +161,13 @@ Result<std::shared_ptr<RasterHandle>> RasterAccess::borrow() const {
     const GdalMessages messages;
     GDALDataset* dataset = GDALDataset::Open(description_.path.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR);
     if (dataset == nullptr) {
-      return messages.failure("the raster cannot be opened again", where_, "check that the file is still there");
+      return messages.failure("the raster cannot be opened again", pyramid_.where,
+                              "check that the file is still there");
     }
-    handle = std::make_unique<RasterHandle>(dataset, georeference_.projection());
+    handle = std::make_unique<RasterHandle>(dataset, pyramid_.georeference.projection());
     if (dataset->GetRasterXSize() != info_.width || dataset->GetRasterYSize() != info_.height ||
         dataset->GetRasterCount() != info_.bands) {
-      return failure("the raster has changed since it was opened", where_, "load the layer again");
+      return failure("the raster has changed since it was opened", pyramid_.where, "load the layer again");
     }
   }
   return std::shared_ptr<RasterHandle>(handle.release(), [pool = pool_](RasterHandle* returned) {
@@ -196,7 +194,7 @@ Result<void> RasterAccess::readStrips(RasterHandle& handle, const RasterLevel& l
   GDALRasterBand* band = handle.dataset().GetRasterBand(1);
   GDALRasterBand* native = level.overview < 0 ? band : band->GetOverview(level.overview);
   if (native == nullptr) {
-    return failure("the raster has lost an overview", where_, "load the layer again");
+    return failure("the raster has lost an overview", pyramid_.where, "load the layer again");
   }
   const auto nativeSize = [&level](int first, int count, int size) {
     return static_cast<int>(std::min(std::int64_t{count} * level.factor, std::int64_t{size} - first));
@@ -213,7 +211,7 @@ Result<void> RasterAccess::readStrips(RasterHandle& handle, const RasterLevel& l
   std::vector<Pixel> strip;
   for (int row = 0; row < window.height; row += rowsAtOnce) {
     if (stop.stop_requested()) {
-      return cancelled(where_);
+      return cancelled(pyramid_.where);
     }
     const int rows = std::min(rowsAtOnce, window.height - row);
     request.window.y = (window.y + row) * level.factor;
@@ -221,7 +219,7 @@ Result<void> RasterAccess::readStrips(RasterHandle& handle, const RasterLevel& l
     Pixel* target = out + row * stride;
     strip.resize(isDirect ? 0 : static_cast<std::size_t>(columns) * static_cast<std::size_t>(request.rows()));
     Pixel* into = isDirect ? target : strip.data();
-    if (auto done = readPixels(handle.dataset(), rule(target), request, into, where_); !done) {
+    if (auto done = readPixels(handle.dataset(), rule(target), request, into, pyramid_.where); !done) {
       return done;
     }
     for (int r = 0; r < rows && !isDirect; ++r) {
@@ -260,7 +258,7 @@ Result<const Pixel*> RasterAccess::resident(RasterHandle& handle, std::size_t le
   constexpr int rowsAtOnce = 64;
   while (kept.rows < l.height) {
     if (stop.stop_requested()) {
-      return cancelled(where_);
+      return cancelled(pyramid_.where);
     }
     const int rows = std::min(rowsAtOnce, l.height - kept.rows);
     Pixel* target = kept.pixels.data() + static_cast<std::ptrdiff_t>(kept.rows) * l.width;
@@ -297,80 +295,46 @@ Result<void> RasterAccess::read(RasterHandle& handle, std::size_t level, const P
   return {};
 }
 
-/// Where an unbounded column and row are within the level; `turned` when the row lies beyond a pole.
-struct RasterAccess::Cell {
-  int x = 0;
-  int y = 0;
-  bool turned = false;
-};
-
-RasterAccess::Cell RasterAccess::cell(const RasterLevel& level, int x, int y) const {
-  Cell result{x, y};
-  const int turn = columnsOfTurn(level);
-  if (turn > 0 && (y < 0 || y >= level.height)) {
-    // The pole's own row coordinate; it need not be the raster's edge (node-registered rasters).
-    const bool isFirst = y < 0;
-    const bool northFirst = georeference_.row(1.0) < georeference_.row(-1.0);
-    const double pole = georeference_.row((isFirst == northFirst ? 1.0 : -1.0) * std::acos(0.0)) / level.scaleY;
-    if (std::abs(pole - (isFirst ? 0 : level.height)) < 1.0) {
-      result.y = static_cast<int>(std::lround(2.0 * pole - y - 1.0));
-      result.turned = true;
-    }
-  }
-  result.y = std::clamp(result.y, 0, level.height - 1);
-  if (turn > 0) {
-    const int first = static_cast<int>(std::lround(georeference_.firstColumn() / level.scaleX));
-    const int offset = (x - first + (result.turned ? turn / 2 : 0)) % turn;
-    result.x = first + (offset < 0 ? offset + turn : offset);
-  }
-  result.x = std::clamp(result.x, 0, level.width - 1);
-  return result;
-}
-
 template <class Pixel>
 Result<void> RasterAccess::fetchUnbounded(RasterHandle& handle, std::size_t level, const UnboundedWindow& window,
                                           Pixel* out, const std::stop_token& stop) const {
-  const RasterLevel& l = levels_[level];
-  for (int row = 0; row < window.height;) {
-    const Cell start = cell(l, window.x, window.y + row);
-    int rows = 1;
-    while (row + rows < window.height) {
-      const Cell next = cell(l, window.x, window.y + row + rows);
-      if (next.y != start.y + rows || next.turned != start.turned) {
-        break;
-      }
-      ++rows;
+  for (const WindowPiece& piece : piecesOf(pyramid_, level, window)) {
+    Pixel* target = out + static_cast<std::ptrdiff_t>(piece.row) * window.width + piece.column;
+    if (auto done = read(handle, level, piece.from, target, window.width, stop); !done) {
+      return done;
     }
-    Pixel* target = out + static_cast<std::ptrdiff_t>(row) * window.width;
-    for (int column = 0; column < window.width;) {
-      const Cell from = cell(l, window.x + column, window.y + row);
-      int columns = 1;
-      while (column + columns < window.width &&
-             cell(l, window.x + column + columns, window.y + row).x == from.x + columns) {
-        ++columns;
-      }
-      auto done = read(handle, level, {from.x, from.y, columns, rows}, target + column, window.width, stop);
-      if (!done) {
-        return done;
-      }
-      column += columns;
-    }
-    row += rows;
   }
   return {};
 }
 
-Result<void> RasterAccess::fetch(RasterHandle& handle, std::size_t level, const UnboundedWindow& window, Rgba* out,
-                                 const std::stop_token& stop) const {
-  if (auto ready = prepareColours(handle.dataset()); !ready) {
-    return ready;
-  }
-  return fetchUnbounded(handle, level, window, out, stop);
-}
+class RasterAccess::Reader final : public PixelReader {
+ public:
+  Reader(const RasterAccess& access, std::shared_ptr<RasterHandle> handle)
+      : access_(access), handle_(std::move(handle)) {}
 
-Result<void> RasterAccess::fetch(RasterHandle& handle, std::size_t level, const UnboundedWindow& window, float* out,
-                                 const std::stop_token& stop) const {
-  return fetchUnbounded(handle, level, window, out, stop);
+  const Pyramid& pyramid() const override { return access_.pyramid_; }
+  const Projection* projection() const override { return handle_->projection(); }
+  Result<void> fetch(std::size_t level, const UnboundedWindow& window, Rgba* out,
+                     const std::stop_token& stop) override {
+    if (auto ready = access_.prepareColours(handle_->dataset()); !ready) {
+      return ready;
+    }
+    return access_.fetchUnbounded(*handle_, level, window, out, stop);
+  }
+  Result<void> fetch(std::size_t level, const UnboundedWindow& window, float* out,
+                     const std::stop_token& stop) override {
+    return access_.fetchUnbounded(*handle_, level, window, out, stop);
+  }
+
+ private:
+  const RasterAccess& access_;
+  std::shared_ptr<RasterHandle> handle_;
+};
+
+Result<std::unique_ptr<PixelReader>> RasterAccess::reader() const {
+  return borrow().map([this](std::shared_ptr<RasterHandle> handle) -> std::unique_ptr<PixelReader> {
+    return std::make_unique<Reader>(*this, std::move(handle));
+  });
 }
 
 std::size_t RasterAccess::residentBytes() const {

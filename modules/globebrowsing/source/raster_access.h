@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "globebrowsing/source/raster_georeference.h"
+#include "globebrowsing/source/pyramid.h"
 #include "globebrowsing/source/raster_levels.h"
 
 namespace meridian::globebrowsing {
@@ -28,10 +28,6 @@ class RasterHandle {
   std::unique_ptr<Projection> projection_;
 };
 
-/// Columns and rows of a level that may run over its edges: x beyond a whole turn goes round, y beyond a pole goes down
-/// the other side, anything else repeats the edge.
-using UnboundedWindow = PixelWindow;
-
 /// What resampling needs of a raster: its pixels at any level, from memory where they are kept. Safe from any thread.
 class RasterAccess {
  public:
@@ -41,20 +37,11 @@ class RasterAccess {
   ~RasterAccess();
 
   [[nodiscard]] const RasterDescription& description() const { return description_; }
-  [[nodiscard]] const std::string& where() const { return where_; }
   [[nodiscard]] const RasterInfo& info() const { return info_; }
-  [[nodiscard]] const RasterGeoreference& georeference() const { return georeference_; }
-  [[nodiscard]] const std::vector<RasterLevel>& levels() const { return levels_; }
-  /// Columns of a whole turn at that level; 0 when the raster does not go round.
-  [[nodiscard]] int columnsOfTurn(const RasterLevel& level) const;
+  [[nodiscard]] const Pyramid& pyramid() const { return pyramid_; }
 
-  /// The borrowed handle goes back to the pool when the pointer is destroyed.
-  [[nodiscard]] Result<std::shared_ptr<RasterHandle>> borrow() const;
-
-  [[nodiscard]] Result<void> fetch(RasterHandle& handle, std::size_t level, const UnboundedWindow& window, Rgba* out,
-                                   const std::stop_token& stop) const;
-  [[nodiscard]] Result<void> fetch(RasterHandle& handle, std::size_t level, const UnboundedWindow& window, float* out,
-                                   const std::stop_token& stop) const;
+  /// With a dataset that goes back to the pool when the reader is destroyed, which must be before the access is.
+  [[nodiscard]] Result<std::unique_ptr<PixelReader>> reader() const;
 
   /// Bytes of pixels kept in memory.
   [[nodiscard]] std::size_t residentBytes() const;
@@ -64,13 +51,14 @@ class RasterAccess {
   struct Resident;
   template <class Pixel>
   struct Store;
-  struct Cell;
+  class Reader;
 
   [[nodiscard]] const ColourRule& rule(const Rgba*) const { return colourRule_; }
   [[nodiscard]] const HeightRule& rule(const float*) const { return heightRule_; }
   [[nodiscard]] Store<Rgba>& store(const Rgba*) const { return *colours_; }
   [[nodiscard]] Store<float>& store(const float*) const { return *heights_; }
-  [[nodiscard]] Cell cell(const RasterLevel& level, int x, int y) const;
+  /// The borrowed handle goes back to the pool when the pointer is destroyed.
+  [[nodiscard]] Result<std::shared_ptr<RasterHandle>> borrow() const;
   [[nodiscard]] Result<void> prepareColours(GDALDataset& dataset) const;
   [[nodiscard]] bool isKept(std::size_t level, std::size_t pixelBytes) const;
 
@@ -88,10 +76,9 @@ class RasterAccess {
   Result<const Pixel*> resident(RasterHandle& handle, std::size_t level, const std::stop_token& stop) const;
 
   RasterDescription description_;
-  std::string where_;
-  RasterGeoreference georeference_;
+  Pyramid pyramid_;
   RasterInfo info_;
-  std::vector<RasterLevel> levels_;
+  std::vector<RasterLevel> levels_;  ///< of the pyramid's, where they come from
   HeightRule heightRule_;
   mutable std::mutex colourRuleMutex_;
   mutable bool hasColourRule_ = false;

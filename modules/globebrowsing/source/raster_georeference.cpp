@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -18,6 +20,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double turn = 2.0 * pi;
 constexpr double degree = pi / 180.0;
+constexpr int cells = 32;  // a side, of the grid that measures a projected raster; bounds the error of curved edges
 using Affine = std::array<double, 6>;  // GDAL's: x = a0 + a1 column + a2 row, y = a3 + a4 column + a5 row
 
 /// In -pi..pi, pi excluded, so that both names of the antimeridian are one.
@@ -39,7 +42,26 @@ struct Crs {
   double primeMeridian = 0.0;
   double eastward = 1.0;
   std::shared_ptr<const Projection> projection;
+  double mercatorRadius = 0.0;  ///< of a spherical Mercator map that starts at longitude 0, beside its projection
 };
+
+/// The radius of EPSG:3857 and its like on other bodies, else 0. PROJ takes geodetic latitudes for the sphere's.
+double sphericalMercatorRadius(const OGRSpatialReference& crs) {
+  char* text = nullptr;
+  const bool isText = crs.exportToProj4(&text) == OGRERR_NONE;
+  const std::string words = isText ? text : "";
+  CPLFree(text);
+  const auto parameter = [&words](const char* name, double otherwise) {
+    const std::size_t at = (" " + words).find(std::string(" +") + name + '=');
+    return at == std::string::npos ? otherwise : std::atof(words.c_str() + at + std::strlen(name) + 2);
+  };
+  const double radius = parameter("R", parameter("a", 0.0));
+  const bool isSphere = parameter("R", parameter("b", -1.0)) == radius && words.find("+rf=") == std::string::npos;
+  const bool isPlain = parameter("lat_ts", 0.0) == 0.0 && parameter("lon_0", 0.0) == 0.0 &&
+                       parameter("x_0", 0.0) == 0.0 && parameter("y_0", 0.0) == 0.0 && parameter("k", 1.0) == 1.0 &&
+                       parameter("k_0", 1.0) == 1.0 && words.find("+units=m ") != std::string::npos;
+  return words.starts_with("+proj=merc ") && isSphere && isPlain ? radius : 0.0;
+}
 
 /// Spherical equidistant cylindrical coordinates are degrees by another scale: nearly all planetary maps are. PROJ's
 /// eqc uses the semi-major axis alone as well.
@@ -125,8 +147,21 @@ Result<Crs> readCrs(const OGRSpatialReference* found, Affine& affine, const std:
     return messages.failure("PROJ rejects the raster's CRS", where, "correct the CRS, for example with gdal_edit.py");
   }
   result.isGeographic = false;
+  if (result.eastward > 0 && result.primeMeridian == 0.0) {
+    result.mercatorRadius = sphericalMercatorRadius(crs);
+  }
   result.projection = std::make_shared<const Projection>(std::move(transformation));
   return result;
+}
+
+Result<OGRSpatialReference> parseCrs(const std::string& text, const std::string& where) {
+  initializeGdal();
+  const GdalMessages messages;
+  OGRSpatialReference crs;
+  if (!text.empty() && crs.SetFromUserInput(text.c_str()) != OGRERR_NONE) {
+    return messages.failure("PROJ does not know the CRS '" + text + "'", where, "name it as EPSG:CODE or give its WKT");
+  }
+  return crs;
 }
 
 struct Georeference {
@@ -154,6 +189,23 @@ Result<Georeference> readGeoreference(GDALDataset& dataset, const std::string& w
 }
 
 }  // namespace
+
+Result<CrsReach> reachOf(const std::string& text, const std::string& where) {
+  Affine degrees{0, 1, 0, 0, 0, 1};
+  const auto crs =
+      parseCrs(text, where).and_then([&](const OGRSpatialReference& found) { return readCrs(&found, degrees, where); });
+  if (!crs) {
+    return tl::make_unexpected(crs.error());
+  }
+  if (crs->mercatorRadius > 0.0) {
+    return CrsReach{turn * crs->mercatorRadius};
+  }
+  if (!crs->isGeographic || degrees[2] != 0.0 || degrees[4] != 0.0) {
+    return CrsReach{};
+  }
+  return CrsReach{360.0 / std::abs(degrees[1]), -degrees[0] / degrees[1], (-90.0 - degrees[3]) / degrees[5],
+                  (90.0 - degrees[3]) / degrees[5]};
+}
 
 Projection::Projection(std::unique_ptr<OGRCoordinateTransformation> transformation)
     : transformation_(std::move(transformation)) {}
@@ -207,6 +259,37 @@ Result<RasterGeoreference> RasterGeoreference::of(GDALDataset& dataset, const Ra
     return tl::make_unexpected(measured.error());
   }
   return result;
+}
+
+Result<RasterGeoreference> RasterGeoreference::of(const std::string& text, const PixelGrid& grid,
+                                                  const std::string& where) {
+  RasterGeoreference result;
+  result.width_ = grid.width;
+  result.height_ = grid.height;
+  Affine affine{grid.left, grid.pixelWidth, 0, grid.top, 0, -grid.pixelHeight};
+  const auto crs =
+      parseCrs(text, where).and_then([&](const OGRSpatialReference& found) { return readCrs(&found, affine, where); });
+  if (!crs) {
+    return tl::make_unexpected(crs.error());
+  }
+  if (crs->mercatorRadius > 0.0) {
+    result.isMercator_ = true;
+    for (double& value : affine) {
+      value /= crs->mercatorRadius * degree;
+    }
+  } else if (!crs->isGeographic) {
+    result.projection_ = crs->projection;
+    result.crsUnit_ = crs->unit;
+    result.primeMeridian_ = crs->primeMeridian;
+    result.eastward_ = crs->eastward;
+    if (auto set = result.setProjected(affine, where); !set) {
+      return tl::make_unexpected(set.error());
+    }
+  }
+  if (!result.projection_) {
+    result.setGeographic(affine);
+  }
+  return result.measure(where).map([&result] { return std::move(result); });
 }
 
 void RasterGeoreference::setGeographic(const std::array<double, 6>& degreesFromPixel) {
@@ -295,6 +378,17 @@ void RasterGeoreference::toPixels(const Projection* projection, std::span<double
   }
 }
 
+double RasterGeoreference::pixelAngleAt(double column, double row) const {
+  const auto cell = [](double place, int size) { return std::clamp(place / size * cells - 0.5, 0.0, cells - 1.0); };
+  const double x = cell(column, width_);
+  const double y = cell(row, height_);
+  const int left = std::min(static_cast<int>(x), cells - 2);
+  const int top = std::min(static_cast<int>(y), cells - 2);
+  const auto at = [this](int c, int r) { return pixelAngles_[static_cast<std::size_t>(r * cells + c)]; };
+  return std::lerp(std::lerp(at(left, top), at(left + 1, top), x - left),
+                   std::lerp(at(left, top + 1), at(left + 1, top + 1), x - left), y - top);
+}
+
 Result<void> RasterGeoreference::measure(const std::string& where) {
   const auto outside = [&where] {
     return failure("the raster lies outside the globe", where,
@@ -303,22 +397,25 @@ Result<void> RasterGeoreference::measure(const std::string& where) {
   if (isGeographic_) {
     const double right = leftLongitude_ + columnStep_ * width_;
     const double bottom = topLatitude_ + rowStep_ * height_;
-    south_ = std::max(std::min(topLatitude_, bottom), -pi / 2);
-    north_ = std::min(std::max(topLatitude_, bottom), pi / 2);
+    const auto latitude = [this](double row) { return isMercator_ ? std::atan(std::sinh(row)) : row; };
+    south_ = std::max(latitude(std::min(topLatitude_, bottom)), -pi / 2);
+    north_ = std::min(latitude(std::max(topLatitude_, bottom)), pi / 2);
     coversAllLongitudes_ = columnsOfTurn_ > 0;
     west_ = coversAllLongitudes_ ? -pi : canonical(std::min(leftLongitude_, right));
     east_ = coversAllLongitudes_ ? pi : west_ + std::min(std::abs(right - leftLongitude_), turn);
     pixelWidthAngle_ = std::abs(columnStep_);
     pixelHeightAngle_ = std::abs(rowStep_);
     finestPixelAngle_ = std::min(pixelWidthAngle_, pixelHeightAngle_);
+    if (isMercator_) {
+      finestPixelAngle_ *= std::min(std::cos(south_), std::cos(north_));
+    }
     if (!std::isfinite(leftLongitude_ + right + topLatitude_ + bottom) || !(north_ > south_) ||
         !(finestPixelAngle_ > 0.0) || std::abs(leftLongitude_) > 10 * turn) {
       return outside();
     }
     return {};
   }
-  // A grid over the raster, brought to longitude and latitude; 32 cells a side bound the error of curved edges.
-  constexpr int cells = 32;
+  // A grid over the raster, brought to longitude and latitude.
   constexpr int points = cells + 1;
   std::vector<double> x(points * points);
   std::vector<double> y(points * points);
@@ -365,6 +462,7 @@ Result<void> RasterGeoreference::measure(const std::string& where) {
   double eastmost = std::numeric_limits<double>::lowest();
   double previous = std::numeric_limits<double>::quiet_NaN();
   finestPixelAngle_ = std::numeric_limits<double>::max();
+  pixelAngles_.assign(std::size_t{cells} * cells, 0.0);
   const auto at = [](int r, int c) { return static_cast<std::size_t>(r * points + c); };
   const auto side = [&](std::size_t a, std::size_t b, double pixels) {
     return good[a] != 0 && good[b] != 0 ? greatCircle(x[a], y[a], x[b], y[b]) / pixels : 0.0;
@@ -384,6 +482,9 @@ Result<void> RasterGeoreference::measure(const std::string& where) {
       north_ = std::max(north_, y[i]);
       const double wide = c < cells ? side(i, at(r, c + 1), width_ / double{cells}) : 0.0;
       const double high = r < cells ? side(i, at(r + 1, c), height_ / double{cells}) : 0.0;
+      if (c < cells && r < cells) {
+        pixelAngles_[static_cast<std::size_t>(r * cells + c)] = std::sqrt(wide * high);
+      }
       for (const double angle : {wide, high}) {
         if (angle > 0.0) {
           finestPixelAngle_ = std::min(finestPixelAngle_, angle);
@@ -399,6 +500,9 @@ Result<void> RasterGeoreference::measure(const std::string& where) {
   }
   if (pixelWidthAngle_ == 0.0 || pixelHeightAngle_ == 0.0) {
     return outside();
+  }
+  for (double& angle : pixelAngles_) {
+    angle = angle > 0.0 ? angle : std::sqrt(pixelWidthAngle_ * pixelHeightAngle_);
   }
   const double margin = std::max(eastmost - westmost, north_ - south_) / (cells * cells);
   south_ = std::max(south_ - margin, -pi / 2);

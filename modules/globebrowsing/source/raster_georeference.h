@@ -1,10 +1,13 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "globebrowsing/source/raster_source.h"
 
@@ -26,12 +29,40 @@ class Projection {
   std::unique_ptr<OGRCoordinateTransformation> transformation_;
 };
 
+/// Pixels on a map: the outer corner of the first, their size, and how many. Units of the CRS, easting or longitude
+/// first.
+struct PixelGrid {
+  double left = 0.0;
+  double top = 0.0;
+  double pixelWidth = 0.0;
+  double pixelHeight = 0.0;
+  int width = 0;
+  int height = 0;
+};
+
+/// How far a CRS reaches, in its units.
+struct CrsReach {
+  double turn = 0.0;    ///< a whole turn of longitude; 0 where columns are no meridians
+  double middle = 0.0;  ///< easting of longitude 0
+  double south = -std::numeric_limits<double>::infinity();  ///< of the poles
+  double north = std::numeric_limits<double>::infinity();
+};
+/// `crs`: what PROJ understands; empty: degrees. Errors: it does not.
+[[nodiscard]] Result<CrsReach> reachOf(const std::string& crs, const std::string& where);
+
 /// Where a raster lies on its globe: longitude and latitude in radians to pixel coordinates (columns from the left
 /// edge, rows from the top edge, of full resolution; a pixel's centre is at its number + 0.5).
 class RasterGeoreference {
  public:
   [[nodiscard]] static Result<RasterGeoreference> of(GDALDataset& dataset, const RasterDescription& description);
 
+  /// The same for a grid that is no dataset. Spherical Mercator (EPSG:3857) is known by its formula, so that its rows
+  /// are parallels and its columns meridians. Errors: as of(dataset).
+  [[nodiscard]] static Result<RasterGeoreference> of(const std::string& crs, const PixelGrid& grid,
+                                                     const std::string& where);
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
   /// Rows are parallels and columns meridians.
   [[nodiscard]] bool isGeographic() const { return isGeographic_; }
   /// Columns of one turn of longitude where the raster holds one, else 0.
@@ -41,7 +72,11 @@ class RasterGeoreference {
 
   /// Geographic rasters only. Outside the raster the answer is outside 0..width, 0..height.
   [[nodiscard]] double column(double longitude) const;
-  [[nodiscard]] double row(double latitude) const { return (latitude - topLatitude_) / rowStep_; }
+  [[nodiscard]] double row(double latitude) const {
+    return ((isMercator_ ? std::asinh(std::tan(latitude)) : latitude) - topLatitude_) / rowStep_;
+  }
+  /// Rows grow towards the poles with 1 / cos(latitude), so that pixels are square everywhere.
+  [[nodiscard]] bool isMercator() const { return isMercator_; }
 
   /// Turns longitudes into columns and latitudes into rows, in place; not-a-number where there is no such place.
   /// `projection` is a clone of this one's, or null when there is none.
@@ -58,6 +93,9 @@ class RasterGeoreference {
   /// Of a pixel's width and height at the raster's middle (geographic: along the equator and a meridian).
   [[nodiscard]] double pixelWidthAngle() const { return pixelWidthAngle_; }
   [[nodiscard]] double pixelHeightAngle() const { return pixelHeightAngle_; }
+  /// The geometric mean of a pixel's sides at that place of a raster that is not geographic; smooth, within some
+  /// percent.
+  [[nodiscard]] double pixelAngleAt(double column, double row) const;
 
  private:
   RasterGeoreference() = default;
@@ -72,6 +110,7 @@ class RasterGeoreference {
   int firstColumn_ = 0;
   double leftLongitude_ = 0.0;  ///< of column coordinate 0
   double columnStep_ = 0.0;     ///< radians a column; negative where longitude runs westward
+  bool isMercator_ = false;     ///< then "latitudes" of rows are isometric ones
   double topLatitude_ = 0.0;    ///< of row coordinate 0
   double rowStep_ = 0.0;        ///< radians a row; negative where the first row is in the north
 
@@ -90,6 +129,7 @@ class RasterGeoreference {
   double finestPixelAngle_ = 0.0;
   double pixelWidthAngle_ = 0.0;
   double pixelHeightAngle_ = 0.0;
+  std::vector<double> pixelAngles_;  ///< of measure()'s cells
 };
 
 }  // namespace meridian::globebrowsing

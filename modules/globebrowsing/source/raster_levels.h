@@ -6,7 +6,7 @@
 
 namespace meridian::globebrowsing {
 
-/// One resolution of a raster.
+/// One resolution of a raster, and where it comes from.
 struct RasterLevel {
   int width = 0;
   int height = 0;

@@ -20,6 +20,8 @@ struct PixelWindow {
   int y = 0;
   int width = 0;
   int height = 0;
+
+  bool operator==(const PixelWindow&) const = default;
 };
 
 /// How a raster's bands become colours.

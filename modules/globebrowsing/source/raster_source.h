@@ -6,9 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "globebrowsing/source/tile_layout.h"
-#include "globebrowsing/tiling/tiling.h"
-#include "host/api/error.h"
+#include "globebrowsing/source/pixel_source.h"
 
 namespace meridian::globebrowsing {
 
@@ -75,23 +73,26 @@ struct RasterInfo {
 /// Safe from any thread: each call borrows a GDAL dataset of its own from a pool. Rasters up to 64 MiB decoded are kept
 /// in memory once they are sampled; coarser levels of rasters without overviews are averaged once and kept (beyond 2^32
 /// pixels, thinned: such a raster wants overviews).
-class RasterSource {
+class RasterSource final : public PixelSource {
  public:
   /// Opens and examines; may read from disk or network, so call it on a worker. Errors: no such file, a directory, not
   /// a raster, no bands, complex samples, a size beyond 2^31 - 1 pixels of memory, a CRS that PROJ rejects, an
   /// invertible geotransform missing, an extent outside the globe.
   [[nodiscard]] static Result<std::shared_ptr<RasterSource>> open(const RasterDescription& description);
-  ~RasterSource();
+  ~RasterSource() override;
   RasterSource(const RasterSource&) = delete;
   RasterSource& operator=(const RasterSource&) = delete;
 
   [[nodiscard]] const RasterInfo& info() const;
   [[nodiscard]] const RasterDescription& description() const;
 
-  /// Whether the raster reaches into the tile; may be true for a near miss, never false for a hit. No input or output.
-  [[nodiscard]] bool overlaps(const Tiling& tiling, const TileIndex& index) const;
-  /// Whether the raster has pixels within the tile that are finer than the tile's samples. No input or output.
-  [[nodiscard]] bool hasDataFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const;
+  [[nodiscard]] bool overlaps(const Tiling& tiling, const TileIndex& index) const override;
+  [[nodiscard]] bool hasDataFiner(const Tiling& tiling, const TileIndex& index,
+                                  const TileLayout& layout) const override;
+  [[nodiscard]] Result<ColourPixels> colours(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
+                                             std::stop_token stop) const override;
+  [[nodiscard]] Result<HeightPixels> heights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
+                                             std::stop_token stop) const override;
 
   /// Pixels kept in memory. Safe from any thread; grows as the raster is sampled, freed with the source.
   [[nodiscard]] std::size_t residentBytes() const;

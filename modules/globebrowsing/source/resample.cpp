@@ -5,6 +5,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "globebrowsing/source/raster_access.h"
 #include "globebrowsing/source/resample_parts.h"
 
 namespace meridian::globebrowsing {
@@ -22,25 +23,6 @@ double nominalSpacing(const Tiling& tiling, const TileIndex& index, const TileLa
   return std::ldexp(2.0 * half * layout.spacing(), -int{index.level});
 }
 
-Sampling chooseSampling(const RasterAccess& access, double spacing, double columnSpacing) {
-  const RasterGeoreference& georeference = access.georeference();
-  const std::vector<RasterLevel>& levels = access.levels();
-  const double ratioX = spacing / georeference.pixelWidthAngle();
-  const double ratioY = spacing / georeference.pixelHeightAngle();
-  Sampling sampling;
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    constexpr double rounding = 1.0 + 1e-9;
-    if (levels[i].scaleY <= ratioY * rounding && levels[i].scaleX <= ratioX * rounding) {
-      sampling.level = i;
-    }
-  }
-  const RasterLevel& level = levels[sampling.level];
-  const double wider = std::max(spacing, columnSpacing) / spacing;
-  sampling.stretchX = std::max(1.0, ratioX * wider / level.scaleX);
-  sampling.stretchY = std::max(1.0, ratioY / level.scaleY);
-  return sampling;
-}
-
 Rgba toRgba(const ColourSum& sum) {
   if (!(sum.alpha > 0.0F)) {
     return {};
@@ -52,22 +34,57 @@ Rgba toRgba(const ColourSum& sum) {
 
 namespace {
 
-/// Any tile from any raster: every sample's place through the CRS.
+/// Points of a picture whose level is chosen by place: those of one sampling after those of another.
 template <class Pixel>
-Result<void> sampleTile(const RasterAccess& access, RasterHandle& handle, const TileRequest& tile, Pixel* out,
-                        const std::stop_token& stop) {
-  if (access.georeference().isGeographic() && tile.tiling.isSeparable()) {
-    return sampleRows(access, handle, tile, out, stop);
+Result<void> samplePlaces(PixelReader& reader, const SampleSpacing& spacing, std::span<const double> columns,
+                          std::span<const double> rows, Pixel* out, const std::stop_token& stop) {
+  std::vector<std::size_t> left;
+  std::vector<Sampling> samplings(columns.size());
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (std::isfinite(columns[i]) && std::isfinite(rows[i])) {
+      samplings[i] = chooseSampling(reader.pyramid(), spacing, columns[i], rows[i]);
+      left.push_back(i);
+    }
   }
-  const double spacing = nominalSpacing(tile.tiling, tile.index, tile.layout);
-  const Sampling sampling = chooseSampling(access, spacing, spacing);
+  while (!left.empty()) {
+    const Sampling sampling = samplings[left.front()];
+    const auto others =
+        std::stable_partition(left.begin(), left.end(), [&](std::size_t i) { return samplings[i] == sampling; });
+    const std::vector<std::size_t> chosen(left.begin(), others);
+    left.erase(left.begin(), others);
+    std::vector<double> x;
+    std::vector<double> y;
+    std::vector<Pixel> pixels;
+    for (const std::size_t i : chosen) {
+      x.push_back(columns[i]);
+      y.push_back(rows[i]);
+      if (out != nullptr) {
+        pixels.push_back(out[i]);
+      }
+    }
+    auto done = samplePoints(reader, sampling, x, y, out != nullptr ? pixels.data() : nullptr, stop);
+    if (!done) {
+      return done;
+    }
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      out[chosen[i]] = pixels[i];
+    }
+  }
+  return {};
+}
+
+/// Every sample's place through the CRS.
+template <class Pixel>
+Result<void> sampleThroughCrs(PixelReader& reader, const TileRequest& tile, Pixel* out, const std::stop_token& stop) {
+  const Pyramid& pyramid = reader.pyramid();
+  const SampleSpacing spacing{nominalSpacing(tile.tiling, tile.index, tile.layout)};
   const int size = tile.layout.size();
   constexpr int rowsAtOnce = 32;
   std::vector<double> x;
   std::vector<double> y;
   for (int first = 0; first < size; first += rowsAtOnce) {
     if (stop.stop_requested()) {
-      return failure("cancelled", access.where());
+      return failure("cancelled", pyramid.where);
     }
     const int rows = std::min(rowsAtOnce, size - first);
     x.clear();
@@ -80,8 +97,10 @@ Result<void> sampleTile(const RasterAccess& access, RasterHandle& handle, const 
         y.push_back(place.latitude);
       }
     }
-    access.georeference().toPixels(handle.projection(), x, y);
-    auto done = samplePoints(access, handle, sampling, x, y, out + static_cast<std::ptrdiff_t>(first) * size, stop);
+    pyramid.georeference.toPixels(reader.projection(), x, y);
+    Pixel* target = out != nullptr ? out + static_cast<std::ptrdiff_t>(first) * size : nullptr;
+    auto done = pyramid.isChosenByPlace ? samplePlaces(reader, spacing, x, y, target, stop)
+                                        : samplePoints(reader, chooseSampling(pyramid, spacing), x, y, target, stop);
     if (!done) {
       return done;
     }
@@ -90,39 +109,42 @@ Result<void> sampleTile(const RasterAccess& access, RasterHandle& handle, const 
 }
 
 template <class Pixel>
-Result<bool> fill(const RasterSource& source, const TileRequest& tile, std::vector<Pixel>& pixels, Pixel empty,
-                  const std::stop_token& stop) {
-  const RasterAccess& access = source.access();
+Result<void> sampleAny(PixelReader& reader, const TileRequest& tile, Pixel* out, const std::stop_token& stop) {
+  return reader.pyramid().georeference.isGeographic() && tile.tiling.isSeparable()
+             ? sampleRows(reader, tile, out, stop)
+             : sampleThroughCrs(reader, tile, out, stop);
+}
+
+/// `make` of a reader that the tile needs; an empty tile without overlap.
+template <class Pixels, class Make>
+Result<Pixels> resample(const RasterSource& source, const TileRequest& tile, const std::stop_token& stop, Make make) {
   if (!source.overlaps(tile.tiling, tile.index)) {
-    return false;
+    return Pixels{tile.layout.size()};
   }
   if (stop.stop_requested()) {
-    return failure("cancelled", access.where());
+    return failure("cancelled", source.access().pyramid().where);
   }
-  const auto handle = access.borrow();
-  if (!handle) {
-    return tl::make_unexpected(handle.error());
-  }
-  const auto size = static_cast<std::size_t>(tile.layout.size());
-  pixels.assign(size * size, empty);
-  if (auto done = sampleTile(access, **handle, tile, pixels.data(), stop); !done) {
-    return tl::make_unexpected(done.error());
-  }
-  return true;
+  return source.access().reader().and_then(
+      [&](const std::unique_ptr<PixelReader>& reader) { return make(*reader, tile, stop); });
 }
 
 }  // namespace
 
-Result<ColourPixels> resampleColours(const RasterSource& source, const Tiling& tiling, const TileIndex& index,
-                                     const TileLayout& layout, std::stop_token stop) {
-  ColourPixels result;
-  result.size = layout.size();
-  std::vector<Rgba> pixels;
-  const auto filled = fill(source, {tiling, index, layout}, pixels, Rgba{}, stop);
-  if (!filled) {
-    return tl::make_unexpected(filled.error());
+Result<void> sampleTile(PixelReader& reader, const TileRequest& tile, Rgba* out, const std::stop_token& stop) {
+  return sampleAny(reader, tile, out, stop);
+}
+
+Result<void> sampleTile(PixelReader& reader, const TileRequest& tile, float* out, const std::stop_token& stop) {
+  return sampleAny(reader, tile, out, stop);
+}
+
+Result<ColourPixels> readColours(PixelReader& reader, const TileRequest& tile, const std::stop_token& stop) {
+  ColourPixels result{tile.layout.size()};
+  std::vector<Rgba> pixels(static_cast<std::size_t>(result.size) * static_cast<std::size_t>(result.size));
+  if (auto done = sampleTile(reader, tile, pixels.data(), stop); !done) {
+    return tl::make_unexpected(done.error());
   }
-  result.allOpaque = *filled;
+  result.allOpaque = true;
   for (const Rgba& pixel : pixels) {
     result.anyOpaque = result.anyOpaque || pixel[3] > 0;
     result.allOpaque = result.allOpaque && pixel[3] == 255;
@@ -134,13 +156,11 @@ Result<ColourPixels> resampleColours(const RasterSource& source, const Tiling& t
   return result;
 }
 
-Result<HeightPixels> resampleHeights(const RasterSource& source, const Tiling& tiling, const TileIndex& index,
-                                     const TileLayout& layout, std::stop_token stop) {
-  HeightPixels result;
-  result.size = layout.size();
-  const auto filled = fill(source, {tiling, index, layout}, result.metres, noHeight, stop);
-  if (!filled) {
-    return tl::make_unexpected(filled.error());
+Result<HeightPixels> readHeights(PixelReader& reader, const TileRequest& tile, const std::stop_token& stop) {
+  HeightPixels result{tile.layout.size()};
+  result.metres.assign(static_cast<std::size_t>(result.size) * static_cast<std::size_t>(result.size), noHeight);
+  if (auto done = sampleTile(reader, tile, result.metres.data(), stop); !done) {
+    return tl::make_unexpected(done.error());
   }
   for (const float metres : result.metres) {
     if (!std::isnan(metres)) {
@@ -153,6 +173,16 @@ Result<HeightPixels> resampleHeights(const RasterSource& source, const Tiling& t
     result.metres.clear();
   }
   return result;
+}
+
+Result<ColourPixels> resampleColours(const RasterSource& source, const Tiling& tiling, const TileIndex& index,
+                                     const TileLayout& layout, std::stop_token stop) {
+  return resample<ColourPixels>(source, {tiling, index, layout}, stop, readColours);
+}
+
+Result<HeightPixels> resampleHeights(const RasterSource& source, const Tiling& tiling, const TileIndex& index,
+                                     const TileLayout& layout, std::stop_token stop) {
+  return resample<HeightPixels>(source, {tiling, index, layout}, stop, readHeights);
 }
 
 }  // namespace meridian::globebrowsing

@@ -4,22 +4,26 @@
 #include <stop_token>
 #include <vector>
 
-#include "globebrowsing/source/raster_source.h"
+#include "globebrowsing/source/tile_layout.h"
+#include "globebrowsing/tiling/tiling.h"
+#include "host/api/error.h"
 
 namespace meridian::globebrowsing {
+
+class RasterSource;
 
 /// A tile's colours: size x size pixels of 4 bytes (red, green, blue, alpha; not premultiplied), north row first.
 struct ColourPixels {
   int size = 0;
-  std::vector<std::uint8_t> rgba;  ///< empty when the raster does not reach the tile
-  bool anyOpaque = false;          ///< some alpha > 0
-  bool allOpaque = false;          ///< every alpha = 255
+  std::vector<std::uint8_t> rgba{};  ///< empty when the raster does not reach the tile
+  bool anyOpaque = false;            ///< some alpha > 0
+  bool allOpaque = false;            ///< every alpha = 255
 };
 
 /// A tile's heights: size x size samples in metres, north row first; not-a-number where there are no data.
 struct HeightPixels {
   int size = 0;
-  std::vector<float> metres;  ///< empty when the raster does not reach the tile
+  std::vector<float> metres{};  ///< empty when the raster does not reach the tile
   bool any = false;
   float minimum = 0.0F;  ///< of the samples that are numbers; 0 without any
   float maximum = 0.0F;

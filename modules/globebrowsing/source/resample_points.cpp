@@ -81,14 +81,14 @@ void evaluate(const Patch<float>& patch, const Sampling& sampling, const Centre&
 }
 
 template <class Pixel>
-Result<void> sample(const RasterAccess& access, RasterHandle& handle, const Sampling& sampling,
-                    std::span<const double> columns, std::span<const double> rows, Pixel* out,
-                    const std::stop_token& stop) {
-  const RasterLevel& level = access.levels()[sampling.level];
-  const int turn = access.columnsOfTurn(level);
-  const int fullTurn = access.georeference().columnsOfTurn();
-  const int width = access.info().width;
-  const int height = access.info().height;
+Result<void> sample(PixelReader& reader, const Sampling& sampling, std::span<const double> columns,
+                    std::span<const double> rows, Pixel* out, const std::stop_token& stop) {
+  const Pyramid& pyramid = reader.pyramid();
+  const PyramidLevel& level = pyramid.levels[sampling.level];
+  const int turn = pyramid.columnsOfTurn(level);
+  const int fullTurn = pyramid.georeference.columnsOfTurn();
+  const int width = pyramid.georeference.width();
+  const int height = pyramid.georeference.height();
   std::vector<Centre> centres(columns.size());
   std::vector<std::uint8_t> inside(columns.size(), 0);
   double seam = std::numeric_limits<double>::quiet_NaN();
@@ -103,14 +103,22 @@ Result<void> sample(const RasterAccess& access, RasterHandle& handle, const Samp
     inside[i] = 1;
     seam = std::isnan(seam) ? columns[i] : seam;
     Centre& centre = centres[i];
-    centre.x = columns[i] / level.scaleX - 0.5;
-    centre.y = rows[i] / level.scaleY - 0.5;
+    centre.x = level.centreX(columns[i]);
+    centre.y = level.centreY(rows[i]);
     if (turn > 0 && std::abs(columns[i] - seam) > fullTurn / 2.0) {
       centre.shift = columns[i] > seam ? -turn : turn;
     }
     // A fallback's triangle lies within the cubic.
     const Taps across = tapsFor(out, centre.x, sampling.stretchX);
     const Taps down = tapsFor(out, centre.y, sampling.stretchY);
+    if (reader.isPlan()) {
+      auto noted =
+          reader.fetch(sampling.level, {across.first + centre.shift, down.first, across.count, down.count}, out, stop);
+      if (!noted) {
+        return noted;
+      }
+      continue;
+    }
     const int spare = static_cast<int>(std::ceil(std::max(sampling.stretchX, sampling.stretchY)));
     x0 = std::min(x0, std::min(across.first, static_cast<int>(std::floor(centre.x)) - spare) + centre.shift);
     x1 = std::max(
@@ -123,14 +131,14 @@ Result<void> sample(const RasterAccess& access, RasterHandle& handle, const Samp
   }
   if (std::int64_t{x1 - x0} * (y1 - y0) > mostPixels && columns.size() > 1) {
     const std::size_t half = columns.size() / 2;
-    auto done = sample(access, handle, sampling, columns.first(half), rows.first(half), out, stop);
-    return done ? sample(access, handle, sampling, columns.subspan(half), rows.subspan(half),
+    auto done = sample(reader, sampling, columns.first(half), rows.first(half), out, stop);
+    return done ? sample(reader, sampling, columns.subspan(half), rows.subspan(half),
                          out + static_cast<std::ptrdiff_t>(half), stop)
                 : done;
   }
   Patch<Pixel> patch{{x0, y0, x1 - x0, y1 - y0}, {}};
   patch.pixels.resize(static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(y1 - y0));
-  if (auto done = access.fetch(handle, sampling.level, patch.window, patch.pixels.data(), stop); !done) {
+  if (auto done = reader.fetch(sampling.level, patch.window, patch.pixels.data(), stop); !done) {
     return done;
   }
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -143,16 +151,14 @@ Result<void> sample(const RasterAccess& access, RasterHandle& handle, const Samp
 
 }  // namespace
 
-Result<void> samplePoints(const RasterAccess& access, RasterHandle& handle, const Sampling& sampling,
-                          std::span<const double> columns, std::span<const double> rows, Rgba* out,
-                          const std::stop_token& stop) {
-  return sample(access, handle, sampling, columns, rows, out, stop);
+Result<void> samplePoints(PixelReader& reader, const Sampling& sampling, std::span<const double> columns,
+                          std::span<const double> rows, Rgba* out, const std::stop_token& stop) {
+  return sample(reader, sampling, columns, rows, out, stop);
 }
 
-Result<void> samplePoints(const RasterAccess& access, RasterHandle& handle, const Sampling& sampling,
-                          std::span<const double> columns, std::span<const double> rows, float* out,
-                          const std::stop_token& stop) {
-  return sample(access, handle, sampling, columns, rows, out, stop);
+Result<void> samplePoints(PixelReader& reader, const Sampling& sampling, std::span<const double> columns,
+                          std::span<const double> rows, float* out, const std::stop_token& stop) {
+  return sample(reader, sampling, columns, rows, out, stop);
 }
 
 }  // namespace meridian::globebrowsing

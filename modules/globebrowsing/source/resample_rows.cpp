@@ -19,6 +19,7 @@ struct Line {
   double place = 0.0;   ///< column or row of full resolution
   double centre = 0.0;  ///< on the level, pixel i centred on i
   int shift = 0;        ///< columns that a line on the far side of the raster's seam moves by
+  Sampling sampling{};  ///< of a row
   bool isWithin = false;
   bool isRegular = true;  ///< else a row at or beyond a pole, where longitudes mean something else
 };
@@ -27,9 +28,9 @@ double turnDifference(double a, double b) {
   return std::remainder(a - b, 2.0 * pi);
 }
 
-std::vector<Line> columnLines(const RasterAccess& access, const TileRequest& tile, const RasterLevel& level) {
-  const RasterGeoreference& georeference = access.georeference();
-  const int turn = access.columnsOfTurn(level);
+std::vector<Line> columnLines(const Pyramid& pyramid, const TileRequest& tile, const PyramidLevel& level) {
+  const RasterGeoreference& georeference = pyramid.georeference;
+  const int turn = pyramid.columnsOfTurn(level);
   const int fullTurn = georeference.columnsOfTurn();
   std::vector<Line> lines(static_cast<std::size_t>(tile.layout.size()));
   int turns = 0;
@@ -39,8 +40,8 @@ std::vector<Line> columnLines(const RasterAccess& access, const TileRequest& til
     Line& line = lines[i];
     line.angle = tile.tiling.geodetic(tile.index, {tile.layout.uv(static_cast<int>(i), 0).x, 0.5}).longitude;
     line.place = georeference.column(line.angle);
-    line.centre = line.place / level.scaleX - 0.5;
-    line.isWithin = fullTurn > 0 || isWithin(line.place, access.info().width);
+    line.centre = level.centreX(line.place);
+    line.isWithin = fullTurn > 0 || isWithin(line.place, georeference.width());
     if (fullTurn > 0) {
       const double step = line.place - previous;
       turns += isFirst ? 0 : step > fullTurn / 2.0 ? -1 : step < -fullTurn / 2.0 ? 1 : 0;
@@ -52,21 +53,42 @@ std::vector<Line> columnLines(const RasterAccess& access, const TileRequest& til
   return lines;
 }
 
-std::vector<Line> rowLines(const RasterAccess& access, const TileRequest& tile, const RasterLevel& level) {
-  const RasterGeoreference& georeference = access.georeference();
+std::vector<Line> rowLines(const Pyramid& pyramid, const TileRequest& tile, const SampleSpacing& spacing) {
+  const RasterGeoreference& georeference = pyramid.georeference;
   const double meridian = tile.tiling.geodetic(tile.index, {0.5, 0.5}).longitude;
   std::vector<Line> lines(static_cast<std::size_t>(tile.layout.size()));
   for (std::size_t i = 0; i < lines.size(); ++i) {
     Line& line = lines[i];
     const GeodeticPosition place = tile.tiling.geodetic(tile.index, {0.5, tile.layout.uv(0, static_cast<int>(i)).y});
     line.angle = place.latitude;
+    line.sampling = chooseSampling(pyramid, spacing, place.latitude);
     line.place = georeference.row(place.latitude);
-    line.centre = line.place / level.scaleY - 0.5;
-    line.isWithin = isWithin(line.place, access.info().height);
+    line.centre = pyramid.levels[line.sampling.level].centreY(line.place);
+    line.isWithin = isWithin(line.place, georeference.height());
     line.isRegular =
         std::abs(place.latitude) < pi / 2 - 1e-12 && std::abs(turnDifference(place.longitude, meridian)) < pi / 2;
   }
   return lines;
+}
+
+/// Rows in turn that are sampled alike.
+struct Band {
+  std::span<const Line> rows;
+  std::size_t firstRow = 0;
+  [[nodiscard]] const Sampling& sampling() const { return rows.front().sampling; }
+};
+
+std::vector<Band> bandsOf(const std::vector<Line>& rows) {
+  std::vector<Band> bands;
+  for (std::size_t first = 0; first < rows.size();) {
+    std::size_t end = first + 1;
+    while (end < rows.size() && rows[end].sampling == rows[first].sampling) {
+      ++end;
+    }
+    bands.push_back({std::span(rows).subspan(first, end - first), first});
+    first = end;
+  }
+  return bands;
 }
 
 /// A kernel's taps for every line, and the pixels they span.
@@ -78,7 +100,7 @@ struct Axis {
 };
 
 template <class MakeTaps>
-Axis makeAxis(const std::vector<Line>& lines, double stretch, MakeTaps make) {
+Axis makeAxis(std::span<const Line> lines, double stretch, MakeTaps make) {
   Axis axis;
   axis.taps.resize(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -95,18 +117,21 @@ Axis makeAxis(const std::vector<Line>& lines, double stretch, MakeTaps make) {
 
 /// Calls row(number, its pixels from columns.first on) for each of the level's rows first..end.
 template <class Pixel, class Row>
-Result<void> forEachRow(const RasterAccess& access, RasterHandle& handle, std::size_t level, const PixelWindow& window,
-                        const std::stop_token& stop, Row row) {
+Result<void> forEachRow(PixelReader& reader, std::size_t level, const PixelWindow& window, const std::stop_token& stop,
+                        Row row) {
+  if (reader.isPlan()) {
+    return reader.fetch(level, window, static_cast<Pixel*>(nullptr), stop);
+  }
   const auto width = static_cast<std::size_t>(window.width);
   const int rowsAtOnce =
       static_cast<int>(std::clamp<std::size_t>(stripPixels / width, 1, static_cast<std::size_t>(window.height)));
   std::vector<Pixel> strip(width * static_cast<std::size_t>(rowsAtOnce));
   for (int y = 0; y < window.height; y += rowsAtOnce) {
     if (stop.stop_requested()) {
-      return failure("cancelled", access.where());
+      return failure("cancelled", reader.pyramid().where);
     }
     const int rows = std::min(rowsAtOnce, window.height - y);
-    auto done = access.fetch(handle, level, {window.x, window.y + y, window.width, rows}, strip.data(), stop);
+    auto done = reader.fetch(level, {window.x, window.y + y, window.width, rows}, strip.data(), stop);
     if (!done) {
       return done;
     }
@@ -119,9 +144,8 @@ Result<void> forEachRow(const RasterAccess& access, RasterHandle& handle, std::s
 
 /// Rows at or beyond a pole, point by point. At the pole itself every longitude is one place: 0 stands for all.
 template <class Pixel>
-Result<void> sampleIrregularRows(const RasterAccess& access, RasterHandle& handle, const TileRequest& tile,
-                                 const Sampling& sampling, const std::vector<Line>& rows, Pixel* out,
-                                 const std::stop_token& stop) {
+Result<void> sampleIrregularRows(PixelReader& reader, const TileRequest& tile, const std::vector<Line>& rows,
+                                 Pixel* out, const std::stop_token& stop) {
   const int size = tile.layout.size();
   std::vector<double> x(static_cast<std::size_t>(size));
   std::vector<double> y(x.size());
@@ -134,10 +158,11 @@ Result<void> sampleIrregularRows(const RasterAccess& access, RasterHandle& handl
       x[c] = isPole
                  ? 0.0
                  : tile.tiling.geodetic(tile.index, tile.layout.uv(static_cast<int>(c), static_cast<int>(r))).longitude;
-      x[c] = access.georeference().column(x[c]);
+      x[c] = reader.pyramid().georeference.column(x[c]);
       y[c] = rows[r].place;
     }
-    auto done = samplePoints(access, handle, sampling, x, y, out + static_cast<std::ptrdiff_t>(r) * size, stop);
+    Pixel* target = out != nullptr ? out + static_cast<std::ptrdiff_t>(r) * size : nullptr;
+    auto done = samplePoints(reader, rows[r].sampling, x, y, target, stop);
     if (!done) {
       return done;
     }
@@ -187,62 +212,53 @@ void sumHeights(const float* pixels, const Axis& cubic, const Axis& triangle, He
   }
 }
 
-}  // namespace
-
-Result<void> sampleRows(const RasterAccess& access, RasterHandle& handle, const TileRequest& tile, Rgba* out,
+/// `out`: the band's first row.
+Result<void> sampleBand(PixelReader& reader, const TileRequest& tile, const Band& band, Rgba* out,
                         const std::stop_token& stop) {
-  const double spacing = nominalSpacing(tile.tiling, tile.index, tile.layout);
-  const double u = tile.layout.spacing();
-  const double columnSpacing = std::abs(turnDifference(tile.tiling.geodetic(tile.index, {0.5 + u, 0.5}).longitude,
-                                                       tile.tiling.geodetic(tile.index, {0.5, 0.5}).longitude));
-  const Sampling sampling = chooseSampling(access, spacing, columnSpacing);
-  const RasterLevel& level = access.levels()[sampling.level];
-  const std::vector<Line> rowPlaces = rowLines(access, tile, level);
-  const Axis columns = makeAxis(columnLines(access, tile, level), sampling.stretchX, triangleTaps);
-  const Axis rows = makeAxis(rowPlaces, sampling.stretchY, triangleTaps);
-  if (!columns.isEmpty() && !rows.isEmpty()) {
-    const auto size = static_cast<std::size_t>(tile.layout.size());
-    const PixelWindow window{columns.first, rows.first, columns.end - columns.first, rows.end - rows.first};
-    std::vector<ColourSum> sums(size * static_cast<std::size_t>(window.height));
-    auto done = forEachRow<Rgba>(
-        access, handle, sampling.level, window, stop,
-        [&](std::size_t row, const Rgba* pixels) { sumColours(pixels, columns, sums.data() + row * size); });
-    if (!done) {
-      return done;
+  const Sampling& sampling = band.sampling();
+  const PyramidLevel& level = reader.pyramid().levels[sampling.level];
+  const Axis columns = makeAxis(columnLines(reader.pyramid(), tile, level), sampling.stretchX, triangleTaps);
+  const Axis rows = makeAxis(band.rows, sampling.stretchY, triangleTaps);
+  if (columns.isEmpty() || rows.isEmpty()) {
+    return {};
+  }
+  const auto size = static_cast<std::size_t>(tile.layout.size());
+  const PixelWindow window{columns.first, rows.first, columns.end - columns.first, rows.end - rows.first};
+  std::vector<ColourSum> sums(reader.isPlan() ? 0 : size * static_cast<std::size_t>(window.height));
+  auto done = forEachRow<Rgba>(reader, sampling.level, window, stop, [&](std::size_t row, const Rgba* pixels) {
+    sumColours(pixels, columns, sums.data() + row * size);
+  });
+  if (!done || reader.isPlan()) {
+    return done;
+  }
+  std::vector<ColourSum> line(size);
+  for (std::size_t r = 0; r < rows.taps.size(); ++r) {
+    const Taps& taps = rows.taps[r];
+    if (taps.count == 0) {
+      continue;
     }
-    std::vector<ColourSum> line(size);
-    for (std::size_t r = 0; r < size; ++r) {
-      const Taps& taps = rows.taps[r];
-      if (taps.count == 0) {
-        continue;
-      }
-      std::fill(line.begin(), line.end(), ColourSum{});
-      for (int i = 0; i < taps.count; ++i) {
-        const ColourSum* from = sums.data() + static_cast<std::size_t>(taps.first + i - rows.first) * size;
-        const auto weight = static_cast<float>(taps.weight[static_cast<std::size_t>(i)]);
-        for (std::size_t c = 0; c < size; ++c) {
-          line[c].red += weight * from[c].red;
-          line[c].green += weight * from[c].green;
-          line[c].blue += weight * from[c].blue;
-          line[c].alpha += weight * from[c].alpha;
-        }
-      }
+    std::fill(line.begin(), line.end(), ColourSum{});
+    for (int i = 0; i < taps.count; ++i) {
+      const ColourSum* from = sums.data() + static_cast<std::size_t>(taps.first + i - rows.first) * size;
+      const auto weight = static_cast<float>(taps.weight[static_cast<std::size_t>(i)]);
       for (std::size_t c = 0; c < size; ++c) {
-        out[r * size + c] = toRgba(line[c]);
+        line[c].red += weight * from[c].red;
+        line[c].green += weight * from[c].green;
+        line[c].blue += weight * from[c].blue;
+        line[c].alpha += weight * from[c].alpha;
       }
+    }
+    for (std::size_t c = 0; c < size; ++c) {
+      out[r * size + c] = toRgba(line[c]);
     }
   }
-  return sampleIrregularRows(access, handle, tile, sampling, rowPlaces, out, stop);
+  return {};
 }
 
-Result<void> sampleRows(const RasterAccess& access, RasterHandle& handle, const TileRequest& tile, float* out,
+Result<void> sampleBand(PixelReader& reader, const TileRequest& tile, const Band& band, float* out,
                         const std::stop_token& stop) {
-  // The tile's own column spacing plays no part: neighbours of unlike width must agree on their shared nodes.
-  const double spacing = nominalSpacing(tile.tiling, tile.index, tile.layout);
-  const Sampling sampling = chooseSampling(access, spacing, spacing);
-  const RasterLevel& level = access.levels()[sampling.level];
-  const std::vector<Line> columnPlaces = columnLines(access, tile, level);
-  const std::vector<Line> rowPlaces = rowLines(access, tile, level);
+  const Sampling& sampling = band.sampling();
+  const std::vector<Line> columnPlaces = columnLines(reader.pyramid(), tile, reader.pyramid().levels[sampling.level]);
   const auto reaching = [](double centre, double stretch) {
     // As far as the cubic's ends, whose weights may be too small to be taken while the triangle's are not.
     Taps taps = cubicTaps(centre, stretch);
@@ -253,55 +269,82 @@ Result<void> sampleRows(const RasterAccess& access, RasterHandle& handle, const 
     return taps;
   };
   const Axis wideColumns = makeAxis(columnPlaces, sampling.stretchX, reaching);
-  const Axis wideRows = makeAxis(rowPlaces, sampling.stretchY, reaching);
-  if (!wideColumns.isEmpty() && !wideRows.isEmpty()) {
-    Axis cubicColumns = makeAxis(columnPlaces, sampling.stretchX, cubicTaps);
-    const Axis triangleColumns = makeAxis(columnPlaces, sampling.stretchX, triangleTaps);
-    const Axis cubicRows = makeAxis(rowPlaces, sampling.stretchY, cubicTaps);
-    const Axis triangleRows = makeAxis(rowPlaces, sampling.stretchY, triangleTaps);
-    cubicColumns.first = wideColumns.first;
-    const auto size = static_cast<std::size_t>(tile.layout.size());
-    const PixelWindow window{wideColumns.first, wideRows.first, wideColumns.end - wideColumns.first,
-                             wideRows.end - wideRows.first};
-    std::vector<HeightSum> sums(size * static_cast<std::size_t>(window.height));
-    auto done =
-        forEachRow<float>(access, handle, sampling.level, window, stop, [&](std::size_t row, const float* pixels) {
-          sumHeights(pixels, cubicColumns, triangleColumns, sums.data() + row * size);
-        });
+  const Axis wideRows = makeAxis(band.rows, sampling.stretchY, reaching);
+  if (wideColumns.isEmpty() || wideRows.isEmpty()) {
+    return {};
+  }
+  Axis cubicColumns = makeAxis(columnPlaces, sampling.stretchX, cubicTaps);
+  const Axis triangleColumns = makeAxis(columnPlaces, sampling.stretchX, triangleTaps);
+  const Axis cubicRows = makeAxis(band.rows, sampling.stretchY, cubicTaps);
+  const Axis triangleRows = makeAxis(band.rows, sampling.stretchY, triangleTaps);
+  cubicColumns.first = wideColumns.first;
+  const auto size = static_cast<std::size_t>(tile.layout.size());
+  const PixelWindow window{wideColumns.first, wideRows.first, wideColumns.end - wideColumns.first,
+                           wideRows.end - wideRows.first};
+  std::vector<HeightSum> sums(reader.isPlan() ? 0 : size * static_cast<std::size_t>(window.height));
+  auto done = forEachRow<float>(reader, sampling.level, window, stop, [&](std::size_t row, const float* pixels) {
+    sumHeights(pixels, cubicColumns, triangleColumns, sums.data() + row * size);
+  });
+  if (!done || reader.isPlan()) {
+    return done;
+  }
+  for (std::size_t r = 0; r < band.rows.size(); ++r) {
+    if (cubicRows.taps[r].count == 0) {
+      continue;
+    }
+    for (std::size_t c = 0; c < size; ++c) {
+      if (cubicColumns.taps[c].count == 0) {
+        continue;
+      }
+      const auto at = [&](const Taps& taps, int i) -> const HeightSum& {
+        return sums[static_cast<std::size_t>(taps.first + i - window.y) * size + c];
+      };
+      double metres = 0.0;
+      const Taps& wide = cubicRows.taps[r];
+      for (int i = 0; i < wide.count; ++i) {
+        metres += wide.weight[static_cast<std::size_t>(i)] * at(wide, i).cubic;
+      }
+      if (std::isnan(metres)) {
+        double present = 0.0;
+        metres = 0.0;
+        const Taps& near = triangleRows.taps[r];
+        for (int i = 0; i < near.count; ++i) {
+          metres += near.weight[static_cast<std::size_t>(i)] * at(near, i).triangle;
+          present += near.weight[static_cast<std::size_t>(i)] * at(near, i).present;
+        }
+        metres = present >= leastPresent ? metres / present : std::numeric_limits<double>::quiet_NaN();
+      }
+      out[r * size + c] = static_cast<float>(metres);
+    }
+  }
+  return {};
+}
+
+template <class Pixel>
+Result<void> sampleBands(PixelReader& reader, const TileRequest& tile, const SampleSpacing& spacing, Pixel* out,
+                         const std::stop_token& stop) {
+  const auto size = static_cast<std::size_t>(tile.layout.size());
+  const std::vector<Line> rows = rowLines(reader.pyramid(), tile, spacing);
+  for (const Band& band : bandsOf(rows)) {
+    auto done = sampleBand(reader, tile, band, out != nullptr ? out + band.firstRow * size : nullptr, stop);
     if (!done) {
       return done;
     }
-    for (std::size_t r = 0; r < size; ++r) {
-      if (cubicRows.taps[r].count == 0) {
-        continue;
-      }
-      for (std::size_t c = 0; c < size; ++c) {
-        if (cubicColumns.taps[c].count == 0) {
-          continue;
-        }
-        const auto at = [&](const Taps& taps, int i) -> const HeightSum& {
-          return sums[static_cast<std::size_t>(taps.first + i - window.y) * size + c];
-        };
-        double metres = 0.0;
-        const Taps& wide = cubicRows.taps[r];
-        for (int i = 0; i < wide.count; ++i) {
-          metres += wide.weight[static_cast<std::size_t>(i)] * at(wide, i).cubic;
-        }
-        if (std::isnan(metres)) {
-          double present = 0.0;
-          metres = 0.0;
-          const Taps& near = triangleRows.taps[r];
-          for (int i = 0; i < near.count; ++i) {
-            metres += near.weight[static_cast<std::size_t>(i)] * at(near, i).triangle;
-            present += near.weight[static_cast<std::size_t>(i)] * at(near, i).present;
-          }
-          metres = present >= leastPresent ? metres / present : std::numeric_limits<double>::quiet_NaN();
-        }
-        out[r * size + c] = static_cast<float>(metres);
-      }
-    }
   }
-  return sampleIrregularRows(access, handle, tile, sampling, rowPlaces, out, stop);
+  return sampleIrregularRows(reader, tile, rows, out, stop);
+}
+
+}  // namespace
+
+Result<void> sampleRows(PixelReader& reader, const TileRequest& tile, Rgba* out, const std::stop_token& stop) {
+  const double u = tile.layout.spacing();
+  const double columnSpacing = std::abs(turnDifference(tile.tiling.geodetic(tile.index, {0.5 + u, 0.5}).longitude,
+                                                       tile.tiling.geodetic(tile.index, {0.5, 0.5}).longitude));
+  return sampleBands(reader, tile, {nominalSpacing(tile.tiling, tile.index, tile.layout), columnSpacing}, out, stop);
+}
+
+Result<void> sampleRows(PixelReader& reader, const TileRequest& tile, float* out, const std::stop_token& stop) {
+  return sampleBands(reader, tile, {nominalSpacing(tile.tiling, tile.index, tile.layout)}, out, stop);
 }
 
 }  // namespace meridian::globebrowsing

@@ -125,18 +125,25 @@ void TileStreamer::take(QueuedJob& finished) {
     entry.bytes += entry.data->bytes();
     ++statistics_->tiles.loaded;
     statistics_->tiles.bytes += entry.data->bytes();
+    if (finished.flaw) {
+      keepError(entry.key.stream, std::make_shared<const Error>(std::move(*finished.flaw)));
+    }
   } else {
     entry.error = std::make_shared<const Error>(std::move(finished.result.error()));
     entry.bytes += bytesOf(*entry.error);
-    const auto [last, isFirst] = lastErrors_.insert_or_assign(entry.key.stream, entry.error);
-    if (isFirst) {
-      // A damaged file fails in many tiles: one message is enough.
-      log::error("{}; more of this layer's tiles may be missing", last->second->message());
-    }
+    keepError(entry.key.stream, entry.error);
     ++statistics_->tiles.failed;
   }
   bytes_ += entry.bytes;
   leavePending(entry);
+}
+
+void TileStreamer::keepError(std::uint32_t stream, std::shared_ptr<const Error> error) {
+  const auto [last, isFirst] = lastErrors_.insert_or_assign(stream, std::move(error));
+  if (isFirst) {
+    // A damaged file fails in many tiles: one message is enough.
+    log::error("{}; more of this layer's tiles may be missing", last->second->message());
+  }
 }
 
 void TileStreamer::leavePending(Entry& entry) {
@@ -167,6 +174,7 @@ void TileStreamer::endFrame() {
       erase(entry);
     }
   }
+  queue_->renewPriorities();
   evict();
   statistics_->memory.tileCache = bytes_;
 }

@@ -25,7 +25,7 @@ struct QueuedJob;
 struct TileAnswer {
   enum class State {
     Absent,   ///< only from peek: neither in memory nor asked for
-    Pending,  ///< waits or runs
+    Pending,  ///< waits (for a worker, or for data from elsewhere, tried again and again) or runs
     Ready,    ///< `data` is there
     Failed    ///< for good; `error` says why
   };
@@ -93,7 +93,7 @@ class TileStreamer {
   /// Tiles that wait or run; of all streams, or of one.
   [[nodiscard]] std::size_t pending() const { return pending_.size(); }
   [[nodiscard]] std::size_t pending(std::uint32_t stream) const;
-  /// Of that stream's failed tiles, the last; null without one. Good until the next call.
+  /// Of that stream's tiles that failed or have a flaw, the last one's; null without one. Good until the next call.
   [[nodiscard]] const Error* lastError(std::uint32_t stream) const;
 
  private:
@@ -114,6 +114,7 @@ class TileStreamer {
   [[nodiscard]] static TileAnswer answer(const Entry& entry);
   void markUsed(Entries::iterator entry);
   void take(QueuedJob& finished);
+  void keepError(std::uint32_t stream, std::shared_ptr<const Error> error);
   void cancel(Entry& entry);
   void leavePending(Entry& entry);
   Entries::iterator erase(Entries::iterator entry);

@@ -14,7 +14,7 @@
 #include <gdal_utils.h>
 #include <gtest/gtest.h>
 
-#include "globebrowsing/source/resample.h"
+#include "globebrowsing/source/raster_source.h"
 #include "globebrowsing/tiling/geodetic_tiling.h"
 
 namespace meridian::globebrowsing::test {

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+
+#include "globebrowsing/source/pixel_source.h"
+#include "globebrowsing/source/service_pyramid.h"
+#include "globebrowsing/source/source_tile_store.h"
+
+namespace meridian::globebrowsing {
+
+/// The tiles of a map service, brought onto a globe's tiling.
+///
+/// Where the service has no tile (it says so itself, or answers that there is nothing, or fails for good), the next
+/// coarser level stands in for it, and so on: services whose finest levels cover cities only, or oceans coarsely. What
+/// no level has is absent. A tile that failed for good leaves the rest of the globe's tile as it is and is told as its
+/// flaw; if nothing else is there either, the globe's tile fails.
+class TiledServiceSource final : public PixelSource {
+ public:
+  /// Errors: what ServicePyramid::of says, no address.
+  [[nodiscard]] static Result<std::shared_ptr<TiledServiceSource>> make(TileService service,
+                                                                        std::shared_ptr<SourceTileStore> store);
+
+  [[nodiscard]] const TileService& service() const { return *service_; }
+  [[nodiscard]] const ServicePyramid& pyramid() const { return pyramid_; }
+  [[nodiscard]] const std::shared_ptr<const TileService>& sharedService() const { return service_; }
+  [[nodiscard]] SourceTileStore& store() const { return *store_; }
+
+  [[nodiscard]] bool overlaps(const Tiling& tiling, const TileIndex& index) const override;
+  [[nodiscard]] bool hasDataFiner(const Tiling& tiling, const TileIndex& index,
+                                  const TileLayout& layout) const override;
+  /// An error: by a task only.
+  [[nodiscard]] Result<ColourPixels> colours(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
+                                             std::stop_token stop) const override;
+  [[nodiscard]] Result<HeightPixels> heights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
+                                             std::stop_token stop) const override;
+  [[nodiscard]] std::unique_ptr<ColourTask> colourTask(const Tiling& tiling, const TileIndex& index,
+                                                       const TileLayout& layout) const override;
+  [[nodiscard]] std::unique_ptr<HeightTask> heightTask(const Tiling& tiling, const TileIndex& index,
+                                                       const TileLayout& layout) const override;
+
+ private:
+  TiledServiceSource(TileService service, ServicePyramid pyramid, std::shared_ptr<SourceTileStore> store)
+      : service_(std::make_shared<const TileService>(std::move(service))),
+        pyramid_(std::move(pyramid)),
+        store_(std::move(store)) {}
+
+  std::shared_ptr<const TileService> service_;
+  ServicePyramid pyramid_;
+  std::shared_ptr<SourceTileStore> store_;
+};
+
+}  // namespace meridian::globebrowsing
