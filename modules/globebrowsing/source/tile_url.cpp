@@ -79,6 +79,9 @@ std::string TileUrl::operator()(const TileAddress& address, const TileMatrix& ma
       case UrlPart::Matrix:
         result += percentEncoded(matrix.identifier, ":");
         break;
+      case UrlPart::MatrixAsIs:
+        result += matrix.identifier;
+        break;
       case UrlPart::Column:
         result += std::to_string(address.column);
         break;

@@ -13,9 +13,10 @@ namespace meridian::globebrowsing {
 /// What stands in a tile's address for the tile.
 enum class UrlPart : std::uint8_t {
   Literal,
-  Matrix,  ///< the matrix's identifier
-  Column,  ///< likewise the next three
-  Row,     ///< from the north
+  Matrix,      ///< the matrix's identifier, escaped
+  MatrixAsIs,  ///< the identifier of a matrix that is named by an address
+  Column,      ///< likewise the next three
+  Row,         ///< from the north
   RowFromSouth,
   ColumnInThrees,  ///< 000/012/345
   RowInThrees,     ///< from the north
