@@ -214,6 +214,7 @@ std::optional<CalendarPeriod> readPeriod(std::string_view text) {
   while (!text.empty()) {
     if (!isTime && (text.front() == 'T' || text.front() == 't')) {
       isTime = true;
+      hasAny = false;
       text.remove_prefix(1);
       continue;
     }

@@ -47,6 +47,14 @@ std::string firstText(const pugi::xml_node& root) {
   return code.empty() ? attribute(coded, "code") : code;
 }
 
+/// HTML need not be XML.
+std::string titleOf(std::string_view page) {
+  const std::string lowered = lowerCase(page);
+  const std::size_t open = lowered.find("<title>");
+  const std::size_t close = lowered.find("</title>", std::min(open, lowered.size()));
+  return close == std::string::npos ? std::string() : std::string(page.substr(open + 7, close - open - 7));
+}
+
 std::optional<std::string> ofJson(std::string_view content) {
   const nlohmann::json json = nlohmann::json::parse(content, nullptr, false);
   if (!json.is_object()) {
@@ -77,7 +85,7 @@ std::optional<std::string> exceptionText(std::span<const std::uint8_t> bytes) {
     return std::nullopt;
   }
   const auto document = XmlDocument::parse(bytes, {});
-  std::string said = document ? firstText(document->root()) : std::string();
+  std::string said = document ? firstText(document->root()) : titleOf(plain);
   if (said.empty()) {
     said = isWide ? "a document in place of data" : std::string(plain.substr(0, longestQuote));
   }
