@@ -31,10 +31,14 @@ class MemoryDataset {
       return;
     }
     VSIFCloseL(file);
-    // Image formats only: others can name files of this machine.
-    const std::array<const char*, 7> drivers{"GTiff", "PNG", "JPEG", "WEBP", "GIF", "BMP", nullptr};
+    // Image formats only: others can name files of this machine. So can MRF's own, and it sees a blob of Lerc1 only.
+    const std::array<const char*, 7> images{"GTiff", "PNG", "JPEG", "WEBP", "GIF", "BMP", nullptr};
+    const std::array<const char*, 2> lerc{"MRF", nullptr};
+    const std::array<const char*, 3> lercOptions{"DATATYPE=Float32", "NDV=-3.4028234663852886e+38", nullptr};
     const std::array<const char*, 1> noSiblings{nullptr};
-    dataset_.reset(GDALDataset::Open(name_.c_str(), GDAL_OF_RASTER, drivers.data(), nullptr, noSiblings.data()));
+    const bool isLerc = formatOf(bytes) == TileFormat::Lerc1;
+    dataset_.reset(GDALDataset::Open(name_.c_str(), GDAL_OF_RASTER, isLerc ? lerc.data() : images.data(),
+                                     isLerc ? lercOptions.data() : nullptr, noSiblings.data()));
   }
   ~MemoryDataset() {
     dataset_.reset();

@@ -171,8 +171,11 @@ TileFormat formatOf(std::span<const std::uint8_t> bytes) {
       startsWith(bytes, "MM\0+"sv)) {
     return TileFormat::Tiff;
   }
-  if (startsWith(bytes, "Lerc2 "sv) || startsWith(bytes, "CntZImage "sv)) {
+  if (startsWith(bytes, "Lerc2 "sv)) {
     return TileFormat::Lerc;
+  }
+  if (startsWith(bytes, "CntZImage "sv)) {
+    return TileFormat::Lerc1;
   }
   if (startsWith(bytes, "GIF8"sv)) {
     return TileFormat::Gif;

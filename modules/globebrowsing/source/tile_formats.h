@@ -11,7 +11,8 @@ namespace meridian::globebrowsing {
 
 // One reader a format, for tile_decoder.cpp. `where` is for errors.
 
-enum class TileFormat : std::uint8_t { Jpeg, Png, WebP, Tiff, Gif, Bmp, Lerc, Unknown };
+/// Lerc1 ("CntZImage") goes through GDAL, whose reader looks where the data end; the LERC library's does not.
+enum class TileFormat : std::uint8_t { Jpeg, Png, WebP, Tiff, Gif, Bmp, Lerc, Lerc1, Unknown };
 [[nodiscard]] TileFormat formatOf(std::span<const std::uint8_t> bytes);
 
 struct DecodedImage {
@@ -22,7 +23,7 @@ struct DecodedImage {
 [[nodiscard]] Result<void> checkTileSize(std::int64_t width, std::int64_t height, const std::string& where);
 [[nodiscard]] Result<DecodedImage> decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& where);
 [[nodiscard]] Result<DecodedImage> decodePng(std::span<const std::uint8_t> bytes, const std::string& where);
-/// Whatever GDAL reads of WebP, TIFF, GIF, BMP, JPEG and PNG.
+/// Whatever GDAL reads of WebP, TIFF, GIF, BMP, JPEG, PNG and Lerc1.
 [[nodiscard]] Result<DecodedImage> decodeByGdal(std::span<const std::uint8_t> bytes, const std::string& where);
 [[nodiscard]] Result<DecodedImage> decodeLerc(std::span<const std::uint8_t> bytes, const std::string& where);
 
