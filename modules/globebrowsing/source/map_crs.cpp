@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include <cpl_conv.h>
 #include <ogr_spatialref.h>
 
 #include "globebrowsing/source/gdal_runtime.h"
@@ -69,6 +70,15 @@ bool import(OGRSpatialReference& crs, const std::string& name) {
   return false;
 }
 
+/// Polar maps have both axes run north (or south), easting first; then the name tells.
+bool hasNorthingFirst(const OGRSpatialReference& crs) {
+  OGRAxisOrientation first = OAO_Other;
+  OGRAxisOrientation second = OAO_Other;
+  const char* name = crs.GetAxis(nullptr, 0, &first);
+  crs.GetAxis(nullptr, 1, &second);
+  return (first == OAO_North && second == OAO_East) || (name != nullptr && STARTS_WITH_CI(name, "Northing"));
+}
+
 }  // namespace
 
 std::string canonicalCrsName(std::string_view name) {
@@ -120,9 +130,7 @@ Result<MapCrs> MapCrs::of(std::string_view name, const std::string& where) {
   if (!crs.IsGeographic() && !crs.IsProjected()) {
     return failure("the coordinate reference system '" + canonical.substr(0, 80) + "' is not one of a map", where);
   }
-  OGRAxisOrientation first = OAO_Other;
-  crs.GetAxis(nullptr, 0, &first);
-  result.isNorthingFirst_ = first == OAO_North;
+  result.isNorthingFirst_ = hasNorthingFirst(crs);
   if (crs.IsGeographic()) {
     result.metresPerUnit_ = crs.GetSemiMajor() * degree;
     return result;

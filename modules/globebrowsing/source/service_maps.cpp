@@ -64,8 +64,9 @@ Result<MapPlace> choosePlace(const Capabilities& capabilities, const Capabilitie
                              const LayerChoices& choices) {
   std::vector<std::string> names = crsByPreference(layer);
   if (!choices.crs.empty()) {
+    const bool isNamed = std::find(names.begin(), names.end(), choices.crs) != names.end();
     std::erase_if(names, [&](const std::string& name) {
-      return name != choices.crs && canonicalCrsName(name) != canonicalCrsName(choices.crs);
+      return isNamed ? name != choices.crs : canonicalCrsName(name) != canonicalCrsName(choices.crs);
     });
     if (names.empty()) {
       return failure("the layer '" + layer.title + "' cannot be had in the CRS '" + choices.crs + "'", capabilities.url,

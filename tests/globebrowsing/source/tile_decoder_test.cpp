@@ -162,8 +162,8 @@ TEST(TileDecoder, JpegIsReadAsGdalReadsIt) {
   }
   // Grey, and the four inks of printers.
   for (const int bands : {1, 4}) {
-    const ColourTile made = colours(makePicture({"JPEG", 16, 8, bands}, [](int, int, int) { return 200; }),
-                                    serviceOfSize(16, 8));
+    const ColourTile made =
+        colours(makePicture({"JPEG", 16, 8, bands}, [](int, int, int) { return 200; }), serviceOfSize(16, 8));
     EXPECT_FALSE(made.isEmpty()) << bands;
     if (bands == 1) {
       EXPECT_NEAR(made.rgba[0], 200, 1);
@@ -361,7 +361,8 @@ std::vector<std::pair<Bytes, TileService>> samples() {
   add(makePicture({"GIF", 64, 64, 1}, ramp), 64, 64);
   add(makePicture({"BMP", 64, 64, 3}, ramp), 64, 64);
   add(makePicture({"GTiff", 64, 64, 1, GDT_Float32, {"COMPRESS=DEFLATE"}}, ramp), 64, 64);
-  add(toBytes("<ServiceExceptionReport><ServiceException code='a'>b</ServiceException></ServiceExceptionReport>"), 9, 9);
+  add(toBytes("<ServiceExceptionReport><ServiceException code='a'>b</ServiceException></ServiceExceptionReport>"), 9,
+      9);
   add(toBytes("{\"error\":{\"code\":499,\"message\":\"Token\"}}"), 9, 9);
   return result;
 }
@@ -369,12 +370,11 @@ std::vector<std::pair<Bytes, TileService>> samples() {
 void decodeBothWays(const Bytes& bytes, const TileService& service) {
   const auto coloured = decodeColours(bytes, service, 0);
   EXPECT_TRUE(!coloured || coloured->isEmpty() ||
-              coloured->rgba.size() == static_cast<std::size_t>(coloured->width) * 4 *
-                                           static_cast<std::size_t>(coloured->height));
+              coloured->rgba.size() ==
+                  static_cast<std::size_t>(coloured->width) * 4 * static_cast<std::size_t>(coloured->height));
   const auto high = decodeHeights(bytes, service, 0);
   EXPECT_TRUE(!high || high->isEmpty() ||
-              high->metres.size() ==
-                  static_cast<std::size_t>(high->width) * static_cast<std::size_t>(high->height));
+              high->metres.size() == static_cast<std::size_t>(high->width) * static_cast<std::size_t>(high->height));
 }
 
 TEST(TileDecoder, SurvivesTruncation) {
@@ -389,7 +389,8 @@ TEST(TileDecoder, SurvivesTruncation) {
 
 TEST(TileDecoder, TruncatedPicturesAreErrors) {
   for (const char* name : {"JPEG", "PNG"}) {
-    const Bytes whole = makePicture({name, 64, 64, 3}, [](int b, int c, int r) { return (c * 37 + r * 91 + b * 7) % 256; });
+    const Bytes whole =
+        makePicture({name, 64, 64, 3}, [](int b, int c, int r) { return (c * 37 + r * 91 + b * 7) % 256; });
     const Bytes half(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(whole.size() / 2));
     EXPECT_NE(errorOf(half, serviceOfSize(64, 64)).find("damaged"), std::string::npos) << name;
   }
