@@ -7,6 +7,8 @@ find_package(spdlog REQUIRED)
 find_package(GDAL REQUIRED)
 find_package(CURL REQUIRED)
 find_package(SQLite3 REQUIRED)
+find_package(pugixml REQUIRED)
+find_package(nlohmann_json REQUIRED)
 
 # meridian_pkg_config(NAME MODULE): the imported target PkgConfig::NAME.
 macro(meridian_pkg_config NAME MODULE)
@@ -17,6 +19,9 @@ endmacro()
 
 meridian_pkg_config(ERFA erfa)
 meridian_pkg_config(GEOGRAPHICLIB geographiclib)
+meridian_pkg_config(PNG libpng)
+meridian_pkg_config(JPEG libjpeg)
+meridian_pkg_config(LERC Lerc)
 # The build that throws C++ exceptions: a Lua error then unwinds our frames.
 meridian_pkg_config(LUA lua5.4-c++)
 if(MERIDIAN_GRAPHICS)
@@ -24,7 +29,6 @@ if(MERIDIAN_GRAPHICS)
   meridian_pkg_config(EGL egl)
   meridian_pkg_config(GLFW glfw3)
   meridian_pkg_config(IMGUI imgui)
-  meridian_pkg_config(PNG libpng)
   meridian_pkg_config(FFMPEG "libavcodec;libavformat;libavutil;libswscale")
 endif()
 

@@ -1,0 +1,279 @@
+#include "globebrowsing/source/service_description.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "globebrowsing/source/capabilities_parts.h"
+#include "globebrowsing/source/gdal_wms.h"
+#include "globebrowsing/source/map_crs.h"
+#include "globebrowsing/source/service_text.h"
+#include "globebrowsing/source/tile_pyramid.h"
+#include "globebrowsing/source/url_template.h"
+#include "globebrowsing/source/vrt_wrapper.h"
+#include "globebrowsing/source/xml_document.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+constexpr std::size_t largestDescription = std::size_t{4} << 20;
+constexpr int deepestNesting = 4;  ///< VRTs that wrap VRTs
+
+bool isDocument(std::string_view text) {
+  const std::string_view begin = trimmed(text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text);
+  return begin.starts_with('<');
+}
+
+/// The text of a small file that begins as XML does; nothing for any other.
+std::optional<std::string> documentIn(const std::string& path) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code) || std::filesystem::file_size(path, code) > largestDescription) {
+    return std::nullopt;
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::string head(256, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  if (!isDocument(head)) {
+    return std::nullopt;
+  }
+  file.clear();
+  file.seekg(0);
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+struct Source {
+  std::string filePath;
+  std::string where;
+  int nesting = 0;
+};
+
+Result<ServiceDescription> describe(const Source& source);
+
+Result<ServiceDescription> describeVrt(const std::string& content, const Source& source, const std::string& folder) {
+  auto wrapper = readVrtWrapper(content, source.where);
+  if (!wrapper) {
+    return tl::make_unexpected(std::move(wrapper.error()));
+  }
+  ServiceDescription result;
+  result.reason = "the VRT does more than pass a service's bands on";
+  if (!*wrapper) {
+    return result;
+  }
+  const std::string& inner = (*wrapper)->source;
+  const bool isFile = !isDocument(inner) && inner.find(':') == std::string::npos;
+  const std::string path =
+      isFile && (*wrapper)->isRelative ? (std::filesystem::path(folder) / inner).lexically_normal().string() : inner;
+  auto described = describe({path, isFile ? path : source.where, source.nesting + 1});
+  if (!described || !described->service) {
+    return described;
+  }
+  std::optional<TileService> service = wrapped(**wrapper, std::move(*described->service));
+  if (service) {
+    result.service = std::move(service);
+    result.reason.clear();
+    result.notes = std::move(described->notes);
+  }
+  return result;
+}
+
+/// "key=value" and "key="value"" of GDAL's WMTS strings, and the elements of its documents.
+void choose(CapabilitiesReference& reference, const std::string& key, std::string value) {
+  if (value.size() >= 2 && value.front() == '"' && value.back() == '"') {
+    value = value.substr(1, value.size() - 2);
+  }
+  const std::string name = lowerCase(key);
+  if (name == "layer") {
+    reference.layer = value;
+  } else if (name == "style") {
+    reference.choices.style = value;
+  } else if (name == "tilematrixset") {
+    reference.choices.matrixSet = value;
+  } else if (name == "time") {
+    reference.choices.time = value;
+  } else if (name == "format") {
+    reference.choices.format = value;
+  }
+}
+
+CapabilitiesReference referenceOfWmts(std::string_view text) {
+  CapabilitiesReference reference;
+  std::vector<std::string> parts;
+  bool isQuoted = false;
+  std::string part;
+  for (const char c : text) {
+    isQuoted = c == '"' ? !isQuoted : isQuoted;
+    if (c == ',' && !isQuoted) {
+      parts.push_back(std::exchange(part, {}));
+    } else {
+      part += c;
+    }
+  }
+  parts.push_back(part);
+  reference.url = repairedUrl(replaceAll(parts.front(), "\"", ""));
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const std::size_t equals = parts[i].find('=');
+    choose(reference, std::string(trimmed(parts[i].substr(0, equals))),
+           equals == std::string::npos ? std::string() : parts[i].substr(equals + 1));
+  }
+  return reference;
+}
+
+Result<ServiceDescription> describeWmtsDocument(const XmlDocument& document) {
+  CapabilitiesReference reference;
+  const pugi::xml_node root = document.root();
+  reference.url = repairedUrl(text(root, "GetCapabilitiesUrl"));
+  if (reference.url.empty()) {
+    return failure("the description has no GetCapabilitiesUrl", document.placeOf(root));
+  }
+  for (const pugi::xml_node& entry : root.children()) {
+    choose(reference, std::string(localName(entry)), text(entry));
+  }
+  ServiceDescription result;
+  result.reference = std::move(reference);
+  return result;
+}
+
+Result<ServiceDescription> describeDocument(const std::string& content, const Source& source,
+                                            const std::string& folder) {
+  auto document = XmlDocument::parse(content, source.where);
+  if (!document) {
+    return tl::make_unexpected(std::move(document.error()));
+  }
+  const pugi::xml_node root = document->root();
+  ServiceDescription result;
+  if (isNamed(root, "GDAL_WMS")) {
+    auto read = readGdalWms(content, source.where);
+    if (!read) {
+      return tl::make_unexpected(std::move(read.error()));
+    }
+    result.service = std::move(read->service);
+    result.reason = std::move(read->reason);
+    result.notes = std::move(read->notes);
+    return result;
+  }
+  if (isNamed(root, "GDAL_WMTS")) {
+    return describeWmtsDocument(*document);
+  }
+  if (isNamed(root, "VRTDataset") && source.nesting < deepestNesting) {
+    return describeVrt(content, source, folder);
+  }
+  result.reason = "a <" + std::string(localName(root)) + "> is no description of a service";
+  return result;
+}
+
+/// A GetMap request tells the layer, the CRS and the extent, and that is all it takes.
+Result<ServiceDescription> describeGetMap(const std::string& url, const std::string& where) {
+  const auto parameter = [&](std::string_view name) { return parameterOf(url, name).value_or(""); };
+  ServiceDescription result;
+  const std::string layers = parameter("layers");
+  if (layers.empty()) {
+    result.reason = "the address names no LAYERS";
+    return result;
+  }
+  const std::string version = parameter("version").empty() ? "1.1.1" : parameter("version");
+  Capabilities capabilities;
+  capabilities.version = version;
+  capabilities.url = where;
+  capabilities.mapAddress = url;
+  CapabilitiesLayer layer;
+  layer.identifier = replaceAll(replaceAll(layers, "%2C", ","), "%20", " ");
+  layer.title = layer.identifier;
+  const std::string crs = replaceAll(parameter("crs").empty() ? parameter("srs") : parameter("crs"), "%3A", ":");
+  layer.crs = {crs.empty() ? std::string("EPSG:4326") : crs};
+  if (const std::string format = replaceAll(parameter("format"), "%2F", "/"); !format.empty()) {
+    layer.formats = {format};
+  }
+  const std::vector<std::string> box = split(replaceAll(parameter("bbox"), "%2C", ","), ",");
+  const auto known = MapCrs::of(layer.crs.front(), where);
+  if (!known) {
+    return tl::make_unexpected(known.error());
+  }
+  if (box.size() == 4) {
+    const bool isTurned = isWmsThree(version) && known->isNorthingFirst();
+    const auto side = [&](std::size_t i) { return number(box[i]).value_or(0.0); };
+    const Extent extent =
+        isTurned ? Extent{side(1), side(0), side(3), side(2)} : Extent{side(0), side(1), side(2), side(3)};
+    layer.boundingBoxes = {
+        {layer.crs.front(), isTurned ? Extent{extent.south, extent.west, extent.north, extent.east} : extent}};
+    if (const auto degrees = known->toDegrees(extent)) {
+      layer.extent = extentFromDegrees(*degrees);
+    }
+  }
+  LayerChoices choices;
+  choices.isTransparent = boolean(parameter("transparent")).value_or(false);
+  if (const std::string style = replaceAll(parameter("styles"), "%2C", ","); !style.empty()) {
+    layer.styles = {{style}};
+    choices.style = style;
+  }
+  auto service = meridian::globebrowsing::serviceOf(capabilities, layer, choices);
+  if (!service) {
+    return tl::make_unexpected(std::move(service.error()));
+  }
+  result.service = std::move(*service);
+  return result;
+}
+
+bool isArcGis(const std::string& text) {
+  const std::string path = lowerCase(withoutQuery(text));
+  return lowerCase(text).starts_with("http") && (path.ends_with("/mapserver") || path.ends_with("/imageserver"));
+}
+
+Result<ServiceDescription> describe(const Source& source) {
+  const std::string& text = source.filePath;
+  if (isDocument(text)) {
+    return describeDocument(text, source, {});
+  }
+  const std::string prefix = lowerCase(text.substr(0, 5));
+  ServiceDescription result;
+  if (prefix == "wmts:") {
+    result.reference = referenceOfWmts(std::string_view(text).substr(5));
+    return result;
+  }
+  if (prefix.starts_with("wms:") && containsIgnoringCase(text, "layers=")) {
+    return describeGetMap(repairedUrl(std::string_view(text).substr(4)), source.where);
+  }
+  if (isUrlTemplate(text)) {
+    auto service = meridian::globebrowsing::serviceOf(UrlTemplate{text, {}, source.where});
+    if (!service) {
+      return tl::make_unexpected(std::move(service.error()));
+    }
+    result.service = std::move(*service);
+    return result;
+  }
+  if (isArcGis(text)) {
+    result.reference = CapabilitiesReference{withParameters(text, {{"f", "json"}})};
+    return result;
+  }
+  if (const std::optional<std::string> content = documentIn(text)) {
+    return describeDocument(*content, {text, text, source.nesting}, std::filesystem::path(text).parent_path().string());
+  }
+  result.reason = "it is no description of a map service";
+  return result;
+}
+
+}  // namespace
+
+Result<ServiceDescription> describeService(const std::string& filePath, const std::string& where) {
+  return describe({filePath, where, 0});
+}
+
+Result<TileService> serviceOf(const CapabilitiesReference& reference, const Capabilities& capabilities) {
+  const CapabilitiesLayer* layer = nullptr;
+  if (!reference.layer.empty()) {
+    layer = capabilities.find(reference.layer);
+  } else {
+    const auto usable = std::find_if(capabilities.layers.begin(), capabilities.layers.end(),
+                                     [](const CapabilitiesLayer& candidate) { return candidate.obstacle.empty(); });
+    layer = usable == capabilities.layers.end() ? nullptr : &*usable;
+  }
+  if (layer == nullptr) {
+    return failure(reference.layer.empty() ? std::string("the service has no layer that can be shown")
+                                           : "the service has no layer '" + reference.layer + "'",
+                   reference.url, "choose one that its capabilities list");
+  }
+  return serviceOf(capabilities, *layer, reference.choices);
+}
+
+}  // namespace meridian::globebrowsing

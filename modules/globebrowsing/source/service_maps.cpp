@@ -1,0 +1,265 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "globebrowsing/source/calendar.h"
+#include "globebrowsing/source/capabilities_parts.h"
+#include "globebrowsing/source/service_text.h"
+#include "globebrowsing/source/tile_pyramid.h"
+#include "globebrowsing/source/tile_url.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+/// Where a service does not say how fine its maps are: that of the best imagery of the Earth.
+constexpr double finestPixelMetres = 0.25;
+constexpr int tileSize = 512;
+
+/// What of a layer's CRSs suits a globe best, as the service names it.
+std::vector<std::string> crsByPreference(const CapabilitiesLayer& layer) {
+  std::vector<std::string> names = layer.crs;
+  if (names.empty()) {
+    names.emplace_back("EPSG:4326");
+  }
+  const auto rank = [](const std::string& name) {
+    const std::string canonical = canonicalCrsName(name);
+    return canonical == "CRS:84" ? 0 : canonical == "EPSG:4326" ? 1 : canonical == "EPSG:3857" ? 3 : 2;
+  };
+  std::stable_sort(names.begin(), names.end(),
+                   [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+  return names;
+}
+
+struct MapPlace {
+  std::string name;  ///< of the CRS, as the service has it
+  MapCrs crs;
+  Extent extent{};  ///< in its units
+};
+
+/// The extent by the layer's BoundingBox in that CRS, else from its geographic one.
+std::optional<Extent> extentIn(const CapabilitiesLayer& layer, const std::string& name, const MapCrs& crs,
+                               bool isAxisOrdered) {
+  std::optional<Extent> geographic;
+  if (layer.extent) {
+    geographic = crs.fromDegrees(toDegrees(*layer.extent));
+  }
+  if (crs.isGeographic() || crs.isWebMercator()) {
+    const Extent world = *crs.fromDegrees({-180.0, -90.0, 180.0, 90.0});
+    return geographic ? geographic : world;
+  }
+  for (const auto& [boxCrs, box] : layer.boundingBoxes) {
+    if (boxCrs == name) {
+      const bool isTurned = isAxisOrdered && crs.isNorthingFirst();
+      const Extent upright = isTurned ? Extent{box.south, box.west, box.north, box.east} : box;
+      if (upright.west < upright.east && upright.south < upright.north) {
+        return upright;
+      }
+    }
+  }
+  return geographic;
+}
+
+Result<MapPlace> choosePlace(const Capabilities& capabilities, const CapabilitiesLayer& layer,
+                             const LayerChoices& choices) {
+  std::vector<std::string> names = crsByPreference(layer);
+  if (!choices.crs.empty()) {
+    const bool isNamed = std::find(names.begin(), names.end(), choices.crs) != names.end();
+    std::erase_if(names, [&](const std::string& name) {
+      return isNamed ? name != choices.crs : canonicalCrsName(name) != canonicalCrsName(choices.crs);
+    });
+    if (names.empty()) {
+      return failure("the layer '" + layer.title + "' cannot be had in the CRS '" + choices.crs + "'", capabilities.url,
+                     "choose one of: " + joined(layer.crs, ", ").substr(0, 300));
+    }
+  }
+  std::optional<Error> last;
+  constexpr std::size_t mostTries = 50;
+  for (std::size_t i = 0; i < std::min(names.size(), mostTries); ++i) {
+    auto crs = MapCrs::of(names[i], capabilities.url);
+    if (!crs) {
+      last = std::move(crs.error());
+      continue;
+    }
+    if (const auto extent = extentIn(layer, names[i], *crs, isWmsThree(capabilities.version))) {
+      return MapPlace{names[i], std::move(*crs), *extent};
+    }
+  }
+  return failure("the layer '" + layer.title + "' can be had in no CRS that is known here", capabilities.url,
+                 last ? last->what : "choose another layer");
+}
+
+Result<std::string> chooseFormat(const Capabilities& capabilities, const CapabilitiesLayer& layer,
+                                 const LayerChoices& choices) {
+  if (!choices.format.empty()) {
+    for (const std::string& format : layer.formats) {
+      if (equalIgnoringCase(format, choices.format)) {
+        return format;
+      }
+    }
+    if (!layer.formats.empty()) {
+      return failure("the layer '" + layer.title + "' has no format '" + choices.format + "'", capabilities.url,
+                     "choose one of: " + joined(layer.formats, ", "));
+    }
+    return choices.format;
+  }
+  if (layer.isOpaque) {  // JPEG is smaller, and nothing would be transparent
+    for (const std::string& format : layer.formats) {
+      if (formatRank(format) == 3) {
+        return format;
+      }
+    }
+  }
+  return layer.formats.empty() ? std::string("image/png") : layer.formats.front();
+}
+
+Result<QueryParameters> mapParameters(const Capabilities& capabilities, const CapabilitiesLayer& layer,
+                                      const LayerChoices& choices, const MapPlace& place) {
+  const bool isNew = isWmsThree(capabilities.version);
+  auto format = chooseFormat(capabilities, layer, choices);
+  if (!format) {
+    return tl::make_unexpected(std::move(format.error()));
+  }
+  if (!choices.style.empty() && std::none_of(layer.styles.begin(), layer.styles.end(), [&](const LayerStyle& style) {
+        return style.identifier == choices.style;
+      })) {
+    return failure("the layer '" + layer.title + "' has no style '" + choices.style + "'", capabilities.url);
+  }
+  QueryParameters parameters{{"SERVICE", "WMS"},
+                             {"VERSION", capabilities.version},
+                             {"REQUEST", "GetMap"},
+                             {"LAYERS", percentEncoded(layer.identifier)},
+                             {"STYLES", percentEncoded(choices.style)},
+                             {isNew ? "CRS" : "SRS", percentEncoded(place.name, ":")},
+                             {"BBOX", isNew && place.crs.isNorthingFirst() ? "{South},{West},{North},{East}"
+                                                                           : "{West},{South},{East},{North}"},
+                             {"WIDTH", "{Width}"},
+                             {"HEIGHT", "{Height}"},
+                             {"FORMAT", percentEncoded(*format, "/")}};
+  if (formatHasAlpha(*format)) {
+    parameters.emplace_back("TRANSPARENT", choices.isTransparent ? "TRUE" : "FALSE");
+  }
+  for (const LayerDimension& dimension : layer.dimensions) {
+    auto value = dimensionValue(dimension, choices, capabilities.url);
+    if (!value) {
+      return tl::make_unexpected(std::move(value.error()));
+    }
+    if (!value->value.empty() && !value->isDefault) {
+      const std::string name = lowerCase(dimension.name);
+      const bool isPlain = name == "time" || name == "elevation";
+      parameters.emplace_back(
+          isPlain ? (name == "time" ? "TIME" : "ELEVATION") : "DIM_" + percentEncoded(dimension.name),
+          percentEncoded(value->value, ":/,"));
+    }
+  }
+  for (const auto& [name, value] : choices.parameters) {
+    parameters.emplace_back(percentEncoded(name), percentEncoded(value));
+  }
+  return parameters;
+}
+
+/// ArcGIS's export operations (REST API, "Export Map" and "Export Image").
+Result<QueryParameters> exportParameters(const CapabilitiesLayer& layer, const LayerChoices& choices,
+                                         const MapPlace& place, const std::string& where) {
+  QueryParameters parameters{{"bbox", "{West},{South},{East},{North}"}, {"size", "{Width},{Height}"}};
+  const std::string code = place.name.substr(std::min(place.name.find(':'), place.name.size() - 1) + 1);
+  parameters.emplace_back("bboxSR", percentEncoded(code));
+  parameters.emplace_back("imageSR", percentEncoded(code));
+  parameters.emplace_back("format", choices.format.empty() ? "png32" : percentEncoded(choices.format));
+  parameters.emplace_back("transparent", choices.isTransparent ? "true" : "false");
+  if (!layer.identifier.empty() && layer.identifier != "0:image") {
+    parameters.emplace_back("layers", "show:" + percentEncoded(layer.identifier));
+  }
+  for (const LayerDimension& dimension : layer.dimensions) {
+    auto value = dimensionValue(dimension, choices, where);
+    if (value && dimension.isTime() && !value->isDefault) {
+      if (const auto instant = readInstant(value->value)) {
+        parameters.emplace_back("time", std::to_string(instant->at));
+      }
+    }
+  }
+  parameters.emplace_back("f", "image");
+  for (const auto& [name, value] : choices.parameters) {
+    parameters.emplace_back(percentEncoded(name), percentEncoded(value));
+  }
+  return parameters;
+}
+
+Result<TileUrl> addressOf(const Capabilities& capabilities, const CapabilitiesLayer& layer, const LayerChoices& choices,
+                          const MapPlace& place) {
+  const bool isExport = capabilities.kind == CapabilitiesKind::ArcGis;
+  auto parameters = isExport ? exportParameters(layer, choices, place, capabilities.url)
+                             : mapParameters(capabilities, layer, choices, place);
+  if (!parameters) {
+    return tl::make_unexpected(std::move(parameters.error()));
+  }
+  return TileUrl::cut(withParameters(capabilities.mapAddress, *parameters), windowPlaceholders());
+}
+
+/// The one tile that such a layer is.
+std::vector<TileMatrix> wholeMatrix(const Capabilities& capabilities, const CapabilitiesLayer& layer,
+                                    const Extent& extent) {
+  constexpr int longest = 2048;
+  const double aspect = (extent.east - extent.west) / (extent.north - extent.south);
+  TileMatrix matrix;
+  matrix.identifier = "0";
+  matrix.tileWidth = aspect >= 1.0 ? longest : std::max(1, static_cast<int>(std::lround(longest * aspect)));
+  matrix.tileHeight = aspect >= 1.0 ? std::max(1, static_cast<int>(std::lround(longest / aspect))) : longest;
+  const auto fit = [](int& size, int fixed, int most) {
+    size = fixed > 0 ? fixed : most > 0 ? std::min(size, most) : size;
+  };
+  fit(matrix.tileWidth, layer.fixedWidth, capabilities.maximumWidth);
+  fit(matrix.tileHeight, layer.fixedHeight, capabilities.maximumHeight);
+  matrix.left = extent.west;
+  matrix.top = extent.north;
+  matrix.pixelWidth = (extent.east - extent.west) / matrix.tileWidth;
+  matrix.pixelHeight = (extent.north - extent.south) / matrix.tileHeight;
+  return {matrix};
+}
+
+std::vector<TileMatrix> pyramidOf(const Capabilities& capabilities, const CapabilitiesLayer& layer,
+                                  const MapPlace& place) {
+  Pyramid pyramid;
+  pyramid.extent = place.extent;
+  pyramid.tileSize = tileSize;
+  for (const int most : {capabilities.maximumWidth, capabilities.maximumHeight}) {
+    pyramid.tileSize = most > 0 ? std::min(pyramid.tileSize, most) : pyramid.tileSize;
+  }
+  const double unit = place.crs.metresPerUnit();
+  pyramid.finestPixel = std::max(layer.finestPixelMetres, finestPixelMetres) / unit;
+  pyramid.coarsestPixel = layer.coarsestPixelMetres / unit;
+  std::vector<TileMatrix> matrices = layOutPyramid(place.crs, pyramid);
+  // The pyramid ends at or below what was asked for; below the layer's own limit maps are empty.
+  while (matrices.size() > 1 && matrices.front().pixelWidth * unit < 0.999 * layer.finestPixelMetres) {
+    matrices.erase(matrices.begin());
+  }
+  return matrices;
+}
+
+}  // namespace
+
+Result<TileService> mapsOf(const Capabilities& capabilities, const CapabilitiesLayer& layer,
+                           const LayerChoices& choices) {
+  auto place = choosePlace(capabilities, layer, choices);
+  if (!place) {
+    return tl::make_unexpected(std::move(place.error()));
+  }
+  auto address = addressOf(capabilities, layer, choices, *place);
+  if (!address) {
+    return tl::make_unexpected(std::move(address.error()));
+  }
+  TileService service;
+  service.where = capabilities.url;
+  service.name = layer.title;
+  service.crs = place->crs.definition();
+  service.attribution = layer.attribution.empty() ? capabilities.attribution : layer.attribution;
+  const bool isWhole = layer.isWholeOnly || (layer.fixedWidth > 0 && layer.fixedHeight > 0);
+  auto matrices = isWhole ? wholeMatrix(capabilities, layer, place->extent) : pyramidOf(capabilities, layer, *place);
+  if (auto set = setMatrices(service, std::move(matrices), place->extent); !set) {
+    return tl::make_unexpected(std::move(set.error()));
+  }
+  service.url = TileUrl::bind(std::move(*address), service.matrices);
+  return service;
+}
+
+}  // namespace meridian::globebrowsing

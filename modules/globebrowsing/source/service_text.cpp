@@ -1,0 +1,226 @@
+#include "globebrowsing/source/service_text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+constexpr std::string_view blanks = " \t\r\n\f\v";
+
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+bool isUnreserved(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '.' ||
+         c == '_' || c == '~';
+}
+
+/// Where the path of "scheme://host/path" begins; 0 where there is no scheme.
+std::size_t pathBegin(std::string_view url) {
+  const std::size_t scheme = url.find("://");
+  if (scheme == std::string_view::npos) {
+    return 0;
+  }
+  return std::min(url.find_first_of("/?#", scheme + 3), url.size());
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) {
+    return {};
+  }
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::string lowerCase(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(), lower);
+  return result;
+}
+
+bool equalIgnoringCase(std::string_view a, std::string_view b) {
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return lower(x) == lower(y); });
+}
+
+bool containsIgnoringCase(std::string_view text, std::string_view part) {
+  return std::search(text.begin(), text.end(), part.begin(), part.end(),
+                     [](char x, char y) { return lower(x) == lower(y); }) != text.end();
+}
+
+std::vector<std::string> split(std::string_view text, std::string_view separators) {
+  std::vector<std::string> parts;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of(separators), text.size());
+    if (const std::string_view part = trimmed(text.substr(0, end)); !part.empty()) {
+      parts.emplace_back(part);
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return parts;
+}
+
+std::string replaceAll(std::string text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+std::optional<double> number(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('+')) {
+    text.remove_prefix(1);
+  }
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<long long> integer(std::string_view text) {
+  const std::optional<double> value = number(text);
+  if (!value || *value != std::floor(*value) || std::abs(*value) > 1e15) {
+    return std::nullopt;
+  }
+  return static_cast<long long>(*value);
+}
+
+std::optional<bool> boolean(std::string_view text) {
+  const std::string word = lowerCase(trimmed(text));
+  if (word == "true" || word == "1" || word == "yes" || word == "on") {
+    return true;
+  }
+  if (word == "false" || word == "0" || word == "no" || word == "off") {
+    return false;
+  }
+  return std::nullopt;
+}
+
+std::string decimal(double value) {
+  std::string text = fmt::format("{:.10f}", value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') {
+    text.pop_back();
+  }
+  return text == "-0" ? "0" : text;
+}
+
+std::string percentEncoded(std::string_view text, std::string_view kept) {
+  std::string result;
+  result.reserve(text.size());
+  for (const char c : text) {
+    if (isUnreserved(c) || kept.find(c) != std::string_view::npos) {
+      result.push_back(c);
+    } else {
+      result += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+  }
+  return result;
+}
+
+std::string withParameters(std::string_view url, const QueryParameters& parameters) {
+  const std::size_t fragment = std::min(url.find('#'), url.size());
+  url = url.substr(0, fragment);
+  const std::size_t question = std::min(url.find('?'), url.size());
+  std::string result(url.substr(0, question));
+  char separator = '?';
+  for (const std::string& part : split(url.substr(std::min(question + 1, url.size())), "&")) {
+    const std::string_view name = std::string_view(part).substr(0, part.find('='));
+    const bool isReplaced = std::any_of(parameters.begin(), parameters.end(), [&](const auto& parameter) {
+      return equalIgnoringCase(parameter.first, name);
+    });
+    if (!isReplaced && part != "?") {
+      result += separator;
+      result += part;
+      separator = '&';
+    }
+  }
+  for (const auto& [name, value] : parameters) {
+    result += separator;
+    result += name;
+    result += '=';
+    result += value;
+    separator = '&';
+  }
+  return result;
+}
+
+std::optional<std::string> parameterOf(std::string_view url, std::string_view name) {
+  const std::size_t question = url.find('?');
+  if (question == std::string_view::npos) {
+    return std::nullopt;
+  }
+  for (const std::string& part : split(url.substr(question + 1, url.find('#') - question - 1), "&")) {
+    const std::size_t equals = part.find('=');
+    if (equalIgnoringCase(part.substr(0, equals), name)) {
+      return equals == std::string::npos ? std::string() : part.substr(equals + 1);
+    }
+  }
+  return std::nullopt;
+}
+
+std::string withoutQuery(std::string_view url) {
+  return std::string(url.substr(0, url.find_first_of("?#")));
+}
+
+std::string resolvedUrl(std::string_view base, std::string_view reference) {
+  reference = trimmed(reference);
+  const std::size_t scheme = reference.find("://");
+  if (scheme != std::string_view::npos && scheme < reference.find_first_of("/?#")) {
+    return std::string(reference);
+  }
+  const std::string document = withoutQuery(base);
+  if (reference.empty()) {
+    return document;
+  }
+  const std::size_t path = pathBegin(document);
+  if (reference.starts_with("//")) {
+    const std::size_t colon = document.find("://");
+    return (colon == std::string::npos ? "http:" : document.substr(0, colon + 1)) + std::string(reference);
+  }
+  if (reference.front() == '/') {
+    return document.substr(0, path) + std::string(reference);
+  }
+  if (reference.front() == '?') {
+    return document + std::string(reference);
+  }
+  const std::size_t slash = document.rfind('/');
+  std::string folder =
+      slash == std::string::npos || slash < path ? document.substr(0, path) : document.substr(0, slash);
+  while (reference.starts_with("./") || reference.starts_with("../")) {
+    const bool isUpward = reference.starts_with("../");
+    reference.remove_prefix(isUpward ? 3 : 2);
+    if (isUpward && folder.size() > path) {
+      folder.resize(std::max(path, std::min(folder.rfind('/'), folder.size())));
+    }
+  }
+  if (folder.empty() && slash != 0) {
+    return std::string(reference);
+  }
+  return folder + '/' + std::string(reference);
+}
+
+std::string repairedUrl(std::string_view url) {
+  std::string result(trimmed(url));
+  for (const std::string_view scheme : {std::string_view("http:/"), std::string_view("https:/")}) {
+    if (lowerCase(result.substr(0, scheme.size())) == scheme && result.substr(scheme.size(), 1) != "/") {
+      result.insert(scheme.size(), "/");
+    }
+  }
+  return result;
+}
+
+}  // namespace meridian::globebrowsing

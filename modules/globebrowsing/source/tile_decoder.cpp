@@ -1,0 +1,226 @@
+#include "globebrowsing/source/tile_decoder.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "globebrowsing/source/service_exception.h"
+#include "globebrowsing/source/tile_formats.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
+
+bool startsWith(std::span<const std::uint8_t> bytes, std::string_view begin, std::size_t at = 0) {
+  return bytes.size() >= at + begin.size() &&
+         std::equal(begin.begin(), begin.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                    [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
+}
+
+/// What there is in place of an image: nothing, as agreed, or an error.
+template <class Tile>
+Result<Tile> withoutImage(std::span<const std::uint8_t> bytes, const TileService& service) {
+  if (bytes.empty()) {
+    return failure("the tile is empty", service.where);
+  }
+  if (const auto said = exceptionText(bytes)) {
+    if (service.isExceptionEmpty) {
+      return Tile{};
+    }
+    return failure("the service says: " + *said, service.where);
+  }
+  return failure(fmt::format("the tile begins with {:02X} {:02X}, which is no image format that is read here", bytes[0],
+                             bytes.size() > 1 ? bytes[1] : 0),
+                 service.where);
+}
+
+Result<DecodedImage> decodeImage(std::span<const std::uint8_t> bytes, TileFormat format, const std::string& where) {
+  switch (format) {
+    case TileFormat::Jpeg:
+      return decodeJpeg(bytes, where);
+    case TileFormat::Png:
+      return decodePng(bytes, where);
+    case TileFormat::Lerc:
+      return decodeLerc(bytes, where);
+    default:
+      return decodeByGdal(bytes, where);
+  }
+}
+
+template <class Image>
+Result<void> checkMatrix(const Image& image, const TileService& service, std::size_t matrix) {
+  assert(matrix < service.matrices.size());
+  const TileMatrix& expected = service.matrices[matrix];
+  if (image.width != expected.tileWidth || image.height != expected.tileHeight) {
+    return failure(fmt::format("the tile has {} x {} pixels in place of {} x {}", image.width, image.height,
+                               expected.tileWidth, expected.tileHeight),
+                   service.where, "correct the description's block or tile size");
+  }
+  return {};
+}
+
+void makeNoDataTransparent(DecodedImage& image, const TileService& service) {
+  const bool alphaIsABand = image.hasAlpha && (service.bands == 2 || service.bands == 4);
+  if (!service.isNoDataTransparent || !service.noData || alphaIsABand || *service.noData < 0.0 ||
+      *service.noData > 255.0 || *service.noData != std::floor(*service.noData)) {
+    return;
+  }
+  const auto absent = static_cast<std::uint8_t>(*service.noData);
+  std::vector<std::uint8_t>& rgba = image.tile.rgba;
+  for (std::size_t at = 0; at < rgba.size(); at += 4) {
+    if (rgba[at] == absent && rgba[at + 1] == absent && rgba[at + 2] == absent) {
+      rgba[at + 3] = 0;
+    }
+  }
+}
+
+float unpacked(const std::uint8_t* rgba, TileEncoding encoding) {
+  const std::uint32_t r = rgba[0];
+  const std::uint32_t g = rgba[1];
+  const std::uint32_t b = rgba[2];
+  const std::uint32_t a = rgba[3];
+  if (encoding == TileEncoding::PackedFloat) {
+    const auto metres = std::bit_cast<float>((r << 24) | (g << 16) | (b << 8) | a);
+    return std::abs(metres) <= 1e6F ? metres : nothing;
+  }
+  if (a == 0) {
+    return nothing;
+  }
+  if (encoding == TileEncoding::MapboxRgb) {
+    return static_cast<float>(-10000.0 + 0.1 * static_cast<double>((r << 16) | (g << 8) | b));
+  }
+  return static_cast<float>(256.0 * r + g + b / 256.0 - 32768.0);
+}
+
+/// Values of band 1; eight bits come from our own, faster readers.
+Result<DecodedValues> decodeValues(std::span<const std::uint8_t> bytes, TileFormat format, const std::string& where) {
+  constexpr std::size_t bitDepthOfPng = 24;
+  constexpr std::size_t colourTypeOfPng = 25;
+  if (format == TileFormat::Lerc) {
+    return valuesOfLerc(bytes, where);
+  }
+  const bool isPlain = format == TileFormat::Jpeg || (format == TileFormat::Png && bytes.size() > colourTypeOfPng &&
+                                                      bytes[bitDepthOfPng] == 8 && bytes[colourTypeOfPng] != 3);
+  if (!isPlain) {
+    return valuesByGdal(bytes, where);
+  }
+  auto image = decodeImage(bytes, format, where);
+  if (!image) {
+    return tl::make_unexpected(std::move(image.error()));
+  }
+  const ColourTile& tile = image->tile;
+  DecodedValues result{tile.width, tile.height, std::vector<float>(tile.rgba.size() / 4)};
+  for (std::size_t i = 0; i < result.values.size(); ++i) {
+    result.values[i] = tile.rgba[4 * i + 3] == 0 ? nothing : static_cast<float>(tile.rgba[4 * i]);
+  }
+  return result;
+}
+
+Result<HeightTile> heightsOfValues(std::span<const std::uint8_t> bytes, TileFormat format, const TileService& service) {
+  auto values = decodeValues(bytes, format, service.where);
+  if (!values) {
+    return tl::make_unexpected(std::move(values.error()));
+  }
+  const double scale = service.heightScale.value_or(values->scale);
+  const double offset = service.heightOffset.value_or(values->offset);
+  const float absent = service.noData ? static_cast<float>(*service.noData) : nothing;
+  HeightTile tile{values->width, values->height, std::move(values->values)};
+  for (float& value : tile.metres) {
+    value = value == absent || !std::isfinite(value) ? nothing : static_cast<float>(value * scale + offset);
+  }
+  return tile;
+}
+
+Result<HeightTile> heightsOfPacked(std::span<const std::uint8_t> bytes, TileFormat format, const TileService& service) {
+  auto image = decodeImage(bytes, format, service.where);
+  if (!image) {
+    return tl::make_unexpected(std::move(image.error()));
+  }
+  HeightTile tile{image->tile.width, image->tile.height, std::vector<float>(image->tile.rgba.size() / 4)};
+  const double scale = service.heightScale.value_or(1.0);
+  const double offset = service.heightOffset.value_or(0.0);
+  for (std::size_t i = 0; i < tile.metres.size(); ++i) {
+    const float metres = unpacked(image->tile.rgba.data() + 4 * i, service.encoding);
+    const bool isAbsent = service.noData && metres == static_cast<float>(*service.noData);
+    tile.metres[i] = isAbsent ? nothing : static_cast<float>(metres * scale + offset);
+  }
+  return tile;
+}
+
+}  // namespace
+
+TileFormat formatOf(std::span<const std::uint8_t> bytes) {
+  using namespace std::string_view_literals;
+  if (startsWith(bytes, "\xFF\xD8\xFF"sv)) {
+    return TileFormat::Jpeg;
+  }
+  if (startsWith(bytes, "\x89PNG\r\n\x1A\n"sv)) {
+    return TileFormat::Png;
+  }
+  if (startsWith(bytes, "RIFF"sv) && startsWith(bytes, "WEBP"sv, 8)) {
+    return TileFormat::WebP;
+  }
+  if (startsWith(bytes, "II*\0"sv) || startsWith(bytes, "MM\0*"sv) || startsWith(bytes, "II+\0"sv) ||
+      startsWith(bytes, "MM\0+"sv)) {
+    return TileFormat::Tiff;
+  }
+  if (startsWith(bytes, "Lerc2 "sv)) {
+    return TileFormat::Lerc;
+  }
+  if (startsWith(bytes, "CntZImage "sv)) {
+    return TileFormat::Lerc1;
+  }
+  if (startsWith(bytes, "GIF8"sv)) {
+    return TileFormat::Gif;
+  }
+  return startsWith(bytes, "BM"sv) ? TileFormat::Bmp : TileFormat::Unknown;
+}
+
+Result<void> checkTileSize(std::int64_t width, std::int64_t height, const std::string& where) {
+  if (width < 1 || height < 1 || width > longestTileSide || height > longestTileSide ||
+      width * height > mostTilePixels) {
+    return failure(fmt::format("the tile announces {} x {} pixels, more than are decoded", width, height), where);
+  }
+  return {};
+}
+
+Result<ColourTile> decodeColours(std::span<const std::uint8_t> bytes, const TileService& service, std::size_t matrix) {
+  const TileFormat format = formatOf(bytes);
+  if (format == TileFormat::Unknown) {
+    return withoutImage<ColourTile>(bytes, service);
+  }
+  auto image = decodeImage(bytes, format, service.where);
+  if (!image) {
+    return tl::make_unexpected(std::move(image.error()));
+  }
+  if (auto fits = checkMatrix(image->tile, service, matrix); !fits) {
+    return tl::make_unexpected(std::move(fits.error()));
+  }
+  makeNoDataTransparent(*image, service);
+  return std::move(image->tile);
+}
+
+Result<HeightTile> decodeHeights(std::span<const std::uint8_t> bytes, const TileService& service, std::size_t matrix) {
+  const TileFormat format = formatOf(bytes);
+  if (format == TileFormat::Unknown) {
+    return withoutImage<HeightTile>(bytes, service);
+  }
+  auto tile = service.encoding == TileEncoding::Image ? heightsOfValues(bytes, format, service)
+                                                      : heightsOfPacked(bytes, format, service);
+  if (!tile) {
+    return tile;
+  }
+  if (auto fits = checkMatrix(*tile, service, matrix); !fits) {
+    return tl::make_unexpected(std::move(fits.error()));
+  }
+  return tile;
+}
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "globebrowsing/source/tile_service.h"
+#include "host/api/error.h"
+
+namespace meridian::globebrowsing {
+
+/// A service's tile as colours: RGBA, 8 bits each, not premultiplied, rows from the north.
+struct ColourTile {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgba{};  ///< width * height * 4
+
+  /// The service said that there is nothing here.
+  [[nodiscard]] bool isEmpty() const { return rgba.empty(); }
+};
+
+/// A service's tile as heights: metres, rows from the north; not-a-number where there are no data.
+struct HeightTile {
+  int width = 0;
+  int height = 0;
+  std::vector<float> metres{};
+
+  [[nodiscard]] bool isEmpty() const { return metres.empty(); }
+};
+
+/// Sides and pixels that a tile may have; what announces more is not decoded.
+inline constexpr int longestTileSide = 8192;
+inline constexpr std::int64_t mostTilePixels = std::int64_t{1} << 24;
+
+/// Decodes the body of an answer to a request for a tile of `service.matrices[matrix]`: JPEG, PNG, WebP, TIFF, GIF,
+/// BMP, LERC; which, its first bytes say. Grey, grey with alpha, RGB, RGBA, palettes; 16 bits are brought to 8. With
+/// isNoDataTransparent, pixels whose bands are all noData get alpha 0.
+///
+/// Empty where the service answers with an exception (OGC XML, ArcGIS JSON, a page in HTML) and isExceptionEmpty says
+/// what that means. Errors: an exception otherwise, quoted; a format that is not read; damaged or truncated data; a
+/// size other than the matrix's; beyond the limits above. No input crashes it. Safe from any thread.
+[[nodiscard]] Result<ColourTile> decodeColours(std::span<const std::uint8_t> bytes, const TileService& service,
+                                               std::size_t matrix);
+
+/// Likewise heights, by service.encoding. Of an Image: band 1 times heightScale plus heightOffset (default: what the
+/// raster says itself, else 1 and 0), not-a-number where noData, the raster's own or its mask say so. Of the packed
+/// ones: not-a-number where alpha is 0 (PackedFloat: where the float is one, or beyond 1e6 metres).
+[[nodiscard]] Result<HeightTile> decodeHeights(std::span<const std::uint8_t> bytes, const TileService& service,
+                                               std::size_t matrix);
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "globebrowsing/source/map_crs.h"
+#include "globebrowsing/source/tile_service.h"
+
+namespace meridian::globebrowsing {
+
+/// Tiles by an address with places in braces, as web maps write it (XYZ, "slippy map"; OSM's and Leaflet's, JOSM's and
+/// MapLibre's words):
+///   {z} {zoom}  {x}  {y}    level, column, row from the north; {-y} {reverseY}: from the south
+///   {q} {quadkey}           Bing's key in place of them
+///   {s} {switch:a,b} {a-c}  one of several servers
+///   {r} {ratio}             nothing (pictures for dense screens)
+///   {bbox-epsg-3857} {bbox} {bbox-epsg-4326}   the tile's corners, west first
+///   {width} {height}        of a tile, in pixels
+/// The levels are EPSG:3857's square halved again and again, or in degrees (isGeodetic) two squares of 180.
+struct UrlTemplate {
+  std::string address;
+  std::string name{};
+  std::string where{};  ///< where it was written, for errors; empty: the address
+  bool isGeodetic = false;
+  bool countsFromSouth = false;  ///< {y} is TMS's
+  int tileSize = 256;
+  int firstLevel = 0;
+  int lastLevel = 19;
+  std::vector<std::string> servers{"a", "b", "c"};
+  std::optional<Extent> extentDegrees{};
+  std::string attribution{};
+};
+
+/// Whether the text is an address with the places of a tile.
+[[nodiscard]] bool isUrlTemplate(const std::string& text);
+/// Errors: no places, or not all; levels or sizes that make no tiles; an extent off the map.
+[[nodiscard]] Result<TileService> serviceOf(const UrlTemplate& description);
+
+}  // namespace meridian::globebrowsing

@@ -1,0 +1,169 @@
+#include "globebrowsing/source/service_description.h"
+
+#include "globebrowsing/source/service_asset.h"
+#include "globebrowsing/source/service_text.h"
+#include "globebrowsing/source/url_template.h"
+#include "service_fixture.h"
+
+namespace meridian::globebrowsing {
+namespace {
+
+using namespace test;
+
+ServiceDescription describe(const std::string& path) {
+  auto described = describeService(path, "a.asset:1");
+  EXPECT_TRUE(described) << (described ? "" : described.error().message());
+  return described ? std::move(*described) : ServiceDescription{};
+}
+
+TEST(UrlTemplate, FillsInWhatWebMapsWrite) {
+  struct Case {
+    const char* address;
+    const char* expected;  ///< of level 3, column 5, row 2
+  };
+  for (const Case& test : {Case{"https://h/{z}/{x}/{y}.png", "https://h/3/5/2.png"},
+                           {"https://h/{zoom}/{x}/{-y}.png", "https://h/3/5/5.png"},
+                           {"https://h/{z}/{x}/{y}{r}.png?k={k}", "https://h/3/5/2.png?k={k}"},
+                           {"https://h/{q}", "https://h/121"},
+                           {"https://{switch:p,q}.h/{z}/{x}/{y}", "https://q.h/3/5/2"},
+                           {"https://{a-c}.h/{z}/{x}/{y}", "https://b.h/3/5/2"}}) {
+    auto service = serviceOf(UrlTemplate{test.address, "n", "w", false, false, 256, 0, 3});
+    ASSERT_TRUE(service) << service.error().message();
+    EXPECT_TRUE(isUrlTemplate(test.address));
+    EXPECT_EQ(service->url({0, 5, 2}), test.expected);
+    EXPECT_EQ(service->crs, "EPSG:3857");
+  }
+  auto geodetic =
+      serviceOf(UrlTemplate{"https://h/{z}/{x}/{y}", "", "", true, true, 512, 1, 2, {}, Extent{0, 0, 45, 45}});
+  ASSERT_TRUE(geodetic);
+  EXPECT_EQ(geodetic->crs, "");
+  ASSERT_EQ(geodetic->matrices.size(), 2U);
+  EXPECT_EQ(geodetic->matrices[0].firstColumn, 4);
+  EXPECT_EQ(geodetic->matrices[0].lastColumn, 4);
+  EXPECT_EQ(geodetic->url({0, 4, 1}), "https://h/2/4/2");
+  const auto box = serviceOf(UrlTemplate{"https://h/?w={width}&b={bbox-epsg-3857}", "", "", false, false, 256, 0, 3});
+  ASSERT_TRUE(box);
+  const std::string url = box->url({0, 5, 2});
+  EXPECT_EQ(url.substr(0, 20), "https://h/?w=256&b=5");
+  const std::vector<std::string> sides = split(url.substr(url.find("b=") + 2), ",");
+  ASSERT_EQ(sides.size(), 4U);
+  const double tile = webMercatorHalfWidth / 4;
+  EXPECT_NEAR(*number(sides[0]), tile, 1e-6);
+  EXPECT_NEAR(*number(sides[1]), tile, 1e-6);
+  EXPECT_NEAR(*number(sides[2]), 2 * tile, 1e-6);
+  EXPECT_NEAR(*number(sides[3]), 2 * tile, 1e-6);
+  EXPECT_FALSE(serviceOf(UrlTemplate{"https://h/{x}/{y}"}));
+  EXPECT_FALSE(serviceOf(UrlTemplate{"https://h/{z}/{x}/{y}", "", "", false, false, 0}));
+  EXPECT_FALSE(isUrlTemplate("http://h/${z}/${x}/${y}"));
+  EXPECT_FALSE(isUrlTemplate("/a/{z}/b"));
+}
+
+TEST(ServiceDescription, TellsWhatAFilePathIs) {
+  EXPECT_TRUE(describe("https://h/{z}/{x}/{y}.png").service);
+  EXPECT_TRUE(describe("<GDAL_WMS><Service name=\"TMS\"><ServerUrl>http://h/${z}/${x}/${y}</ServerUrl></Service>"
+                       "<DataWindow><TileLevel>1</TileLevel></DataWindow></GDAL_WMS>")
+                  .service);
+  const ServiceDescription wmts =
+      describe("WMTS:https://h/WMTSCapabilities.xml,layer=\"a,b\",tilematrixset=250m,style=\"dark\"");
+  ASSERT_TRUE(wmts.reference);
+  EXPECT_EQ(wmts.reference->url, "https://h/WMTSCapabilities.xml");
+  EXPECT_EQ(wmts.reference->layer, "a,b");
+  EXPECT_EQ(wmts.reference->choices.matrixSet, "250m");
+  EXPECT_EQ(wmts.reference->choices.style, "dark");
+  const ServiceDescription document =
+      describe("<GDAL_WMTS><GetCapabilitiesUrl>https://h/c.xml</GetCapabilitiesUrl><Layer>x</Layer></GDAL_WMTS>");
+  ASSERT_TRUE(document.reference);
+  EXPECT_EQ(document.reference->layer, "x");
+  const ServiceDescription esri = describe("https://h/arcgis/rest/services/A/MapServer?f=json");
+  ASSERT_TRUE(esri.reference);
+  EXPECT_EQ(esri.reference->url, "https://h/arcgis/rest/services/A/MapServer?f=json");
+  for (const char* other : {"/no/such/file.tif", "NETCDF:\"a.nc\":b", "/vsicurl/http://h/a.tif", "<VRTDataset/>",
+                            "WMS:http://h/w?REQUEST=GetCapabilities"}) {
+    const ServiceDescription gdal = describe(other);
+    EXPECT_FALSE(gdal.service || gdal.reference) << other;
+    EXPECT_FALSE(gdal.reason.empty());
+  }
+  EXPECT_FALSE(describeService("<GDAL_WMS>", "a.asset:1"));
+}
+
+TEST(ServiceDescription, GetMapAddressesAreLayers) {
+  const ServiceDescription old = describe(
+      "WMS:http://h/w?map=m&SERVICE=WMS&VERSION=1.1.1&REQUEST=GetMap&LAYERS=a,b&STYLES=&SRS=EPSG:4326&"
+      "BBOX=-180,-90,180,90&FORMAT=image/jpeg");
+  ASSERT_TRUE(old.service);
+  const std::string url = old.service->url({old.service->matrices.size() - 1, 1, 0});
+  EXPECT_EQ(url,
+            "http://h/w?map=m&SERVICE=WMS&VERSION=1.1.1&REQUEST=GetMap&LAYERS=a%2Cb&STYLES=&SRS=EPSG:4326&"
+            "BBOX=0,-90,180,90&WIDTH=512&HEIGHT=512&FORMAT=image/jpeg");
+  const ServiceDescription three =
+      describe("WMS:http://h/w?VERSION=1.3.0&LAYERS=a&CRS=EPSG:4326&BBOX=-10,20,30,60&FORMAT=image/png");
+  ASSERT_TRUE(three.service);
+  EXPECT_NEAR(three.service->west, 20.0, 1e-9);
+  EXPECT_NEAR(three.service->north, 30.0, 1e-9);
+}
+
+TEST(ServiceDescription, RealVrtsNeedTheirSibling) {
+  const std::string path = sharedData("gdal_wms_xml/earth/moon/nasa-treks/LRO_LROC_DEM/Marius_Hills.vrt");
+  MERIDIAN_NEEDS(path);
+  // The sibling is not among the shared data: it is made here, by what the VRT says of it.
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "meridian_vrt_wrapper";
+  std::filesystem::create_directories(folder);
+  std::filesystem::copy_file(path, folder / "Marius_Hills.vrt", std::filesystem::copy_options::overwrite_existing);
+  EXPECT_FALSE(describe((folder / "Marius_Hills.vrt").string()).service);
+  std::ofstream(folder / "Marius_Hills.wms")
+      << "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>http://h/${z}/${y}/${x}.png</ServerUrl></Service><DataWindow>"
+         "<TileCountX>2</TileCountX><TileCountY>1</TileCountY><TileLevel>13</TileLevel><YOrigin>top</YOrigin>"
+         "</DataWindow><BlockSizeX>256</BlockSizeX><BlockSizeY>256</BlockSizeY></GDAL_WMS>";
+  const ServiceDescription whole = describe((folder / "Marius_Hills.vrt").string());
+  ASSERT_TRUE(whole.service) << whole.reason;
+  EXPECT_TRUE(whole.service->isNoDataTransparent);
+  EXPECT_EQ(whole.service->bands, 3);
+  EXPECT_EQ(whole.service->url({0, 16383, 8191}), "http://h/13/8191/16383.png");
+  std::filesystem::remove_all(folder);
+}
+
+/// What is written is read again, and asks for the same tiles at the same places.
+void comesBack(const Capabilities& capabilities, const std::string& layer, const char* begin) {
+  SCOPED_TRACE(layer);
+  const CapabilitiesLayer* found = capabilities.find(layer);
+  ASSERT_NE(found, nullptr);
+  const TileService service = *serviceOf(capabilities, *found);
+  const auto asset = assetOf(capabilities, *found, {}, {"Earth", "ColorLayers"});
+  ASSERT_TRUE(asset) << asset.error().message();
+  const std::string path = *asset->table.find("FilePath")->string();
+  EXPECT_EQ(path.substr(0, std::string_view(begin).size()), begin);
+  EXPECT_NE(asset->text.find("addLayer(\"Earth\", \"ColorLayers\", layer)"), std::string::npos) << asset->text;
+  ServiceDescription again = describe(path);
+  if (again.reference) {
+    again.service = *serviceOf(*again.reference, capabilities);
+  } else {
+    EXPECT_TRUE(openWithGdal(path)) << path;  // and so OpenSpace can
+  }
+  ASSERT_TRUE(again.service) << path;
+  // The same place: the tile of ours around the middle of the coarsest level, wherever it is counted from.
+  const TileMatrix& ours = service.matrices.back();
+  const TileMatrix& theirs = again.service->matrices.back();
+  EXPECT_NEAR(ours.pixelWidth, theirs.pixelWidth, 1e-6 * ours.pixelWidth);
+  if (again.service->url({again.service->matrices.size() - 1, 0, 0}).find("bbox") == std::string::npos) {
+    EXPECT_EQ(service.url({service.matrices.size() - 1, ours.lastColumn, ours.lastRow}),
+              again.service->url({again.service->matrices.size() - 1, ours.lastColumn, ours.lastRow}));
+    const TileMatrix& finest = service.matrices.front();
+    EXPECT_EQ(service.url({0, finest.firstColumn, finest.lastRow}),
+              again.service->url({0, finest.firstColumn, finest.lastRow}));
+  }
+}
+
+TEST(ServiceAsset, WhatIsWrittenIsReadAgain) {
+  MERIDIAN_NEEDS(sharedData("capabilities"));
+  comesBack(realCapabilities("wmts_eox_maps.xml"), "bluemarble", "<GDAL_WMS>");
+  comesBack(realCapabilities("wmts_nasa_trek_mars_themis.xml"), "THEMIS_NightIR_ControlledMosaics_100m_v2_oct2018",
+            "<GDAL_WMS>");
+  comesBack(realCapabilities("wmts_pdok_nl.xml"), "brtachtergrondkaart", "WMTS:");
+  comesBack(realCapabilities("wms130_gibs_onearth.xml"), "NASA_GIBS_EPSG4326", "<GDAL_WMS>");
+  comesBack(realCapabilities("wms111_noaa_nowcoast_forecasts.xml"), "world_countries_label", "<GDAL_WMS>");
+  comesBack(realCapabilities("tms_ne2_webmercator_tilemapresource.xml", "http://h/t/tilemapresource.xml"),
+            "ne2-webmerc.tif", "<GDAL_WMS>");
+}
+
+}  // namespace
+}  // namespace meridian::globebrowsing

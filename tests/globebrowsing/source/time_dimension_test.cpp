@@ -1,0 +1,215 @@
+#include "globebrowsing/source/time_dimension.h"
+
+#include <chrono>
+
+#include "globebrowsing/source/service_text.h"
+#include "service_fixture.h"
+
+namespace meridian::globebrowsing {
+namespace {
+
+using namespace test;
+
+const Time now = *Time::fromUtc("2026-11-25T12:00:00");
+
+TimeDimension dimension(std::string_view values, std::string_view standard = {}) {
+  return TimeDimension::parse(values, standard, now);
+}
+
+Time at(std::string_view text) {
+  const auto time = Time::fromUtc(text);
+  EXPECT_TRUE(time) << text;
+  return time.value_or(Time());
+}
+
+std::string textOf(const std::optional<TimeValue>& value) {
+  return value ? value->text : "nothing";
+}
+
+TEST(Calendar, ReadsWhatServicesWrite) {
+  struct Case {
+    const char* text;
+    const char* utc;  ///< null: no time
+  };
+  for (const Case& test : std::initializer_list<Case>{{"1990", "1990-01-01T00:00:00"},
+                                                      {"2007-05", "2007-05-01T00:00:00"},
+                                                      {"2012-02-29", "2012-02-29T00:00:00"},
+                                                      {"20110805", "2011-08-05T00:00:00"},
+                                                      {"20110805T1230", "2011-08-05T12:30:00"},
+                                                      {"20110805T123015Z", "2011-08-05T12:30:15"},
+                                                      {"2012-02-29T12", "2012-02-29T12:00:00"},
+                                                      {"2012-02-29T12:30", "2012-02-29T12:30:00"},
+                                                      {"2012-02-29T12:30Z", "2012-02-29T12:30:00"},
+                                                      {"2012-02-29T12:30:15.250Z", "2012-02-29T12:30:15.250"},
+                                                      {"2012-02-29 12:30:15", "2012-02-29T12:30:15"},
+                                                      {"2012-02-29T12:30:15+02:00", "2012-02-29T10:30:15"},
+                                                      {"2012-02-29T00:30:15-0130", "2012-02-29T02:00:15"},
+                                                      {"2012-02-28T24:00:00Z", "2012-02-29T00:00:00"},
+                                                      {" 2012-02-29 ", "2012-02-29T00:00:00"},
+                                                      {"2011-02-29", nullptr},
+                                                      {"2011-13-01", nullptr},
+                                                      {"2011-1-1", nullptr},
+                                                      {"2011-01-01T25:00", nullptr},
+                                                      {"2011-01-01T12:61", nullptr},
+                                                      {"2011-01-01x", nullptr},
+                                                      {"20", nullptr},
+                                                      {"-", nullptr},
+                                                      {"", nullptr},
+                                                      {"default", nullptr}}) {
+    const auto instant = readInstant(test.text);
+    ASSERT_EQ(instant.has_value(), test.utc != nullptr) << test.text;
+    if (instant) {
+      EXPECT_NEAR(*timeOf(instant->at) - at(test.utc), 0.0, 1e-6) << test.text;
+    }
+  }
+}
+
+TEST(Calendar, WritesInstantsAsTheyWereWritten) {
+  for (const char* text : {"1990", "2007-05", "2012-02-29", "20110805", "2012-02-29T12", "2012-02-29T12:30Z",
+                           "2012-02-29T12:30:15", "2012-02-29T12:30:15.250Z", "2012-02-29 12:30:15", "20110805T123015Z",
+                           "1969-12-31T23:59:59.999Z", "0001-01-01"}) {
+    const auto instant = readInstant(text);
+    ASSERT_TRUE(instant) << text;
+    EXPECT_EQ(writeInstant(instant->at, instant->style), text);
+  }
+}
+
+TEST(Calendar, ReadsPeriods) {
+  EXPECT_EQ(readPeriod("P1Y"), (CalendarPeriod{12, 0}));
+  EXPECT_EQ(readPeriod("P1Y6M"), (CalendarPeriod{18, 0}));
+  EXPECT_EQ(readPeriod("P1M2DT3H4M5S"), (CalendarPeriod{1, ((2 * 24 + 3) * 60 + 4) * 60'000 + 5000}));
+  EXPECT_EQ(readPeriod("P2W"), (CalendarPeriod{0, 14 * 86'400'000LL}));
+  EXPECT_EQ(readPeriod("PT0.5S"), (CalendarPeriod{0, 500}));
+  EXPECT_EQ(readPeriod("PT1,5H"), (CalendarPeriod{0, 5'400'000}));
+  EXPECT_EQ(readPeriod("p6817d"), (CalendarPeriod{0, 6817 * 86'400'000LL}));
+  for (const char* bad : {"PBAD", "P", "PT", "P1", "1D", "P1H", "PT1D", "P1.5M", "P-1D", "P1DT", "P99999999999D", ""}) {
+    EXPECT_FALSE(readPeriod(bad)) << bad;
+  }
+}
+
+TEST(TimeDimension, StepsThroughLists) {
+  const TimeDimension list = dimension("2001-01-01, 2003-01-01,2002-01-01,\n2010-06-30");
+  EXPECT_EQ(list.count(), 4U);
+  EXPECT_EQ(textOf(list.first()), "2001-01-01");
+  EXPECT_EQ(textOf(list.last()), "2010-06-30");
+  EXPECT_EQ(textOf(list.defaultValue()), "2010-06-30");
+  EXPECT_EQ(textOf(list.atOrBefore(at("2002-12-31T23:59:59"))), "2002-01-01");
+  EXPECT_EQ(textOf(list.atOrBefore(at("2003-01-01"))), "2003-01-01");
+  EXPECT_EQ(textOf(list.atOrBefore(at("2000-12-31"))), "nothing");
+  EXPECT_EQ(textOf(list.nearest(at("2000-12-31"))), "2001-01-01");
+  EXPECT_EQ(textOf(list.nearest(at("2002-11-01"))), "2003-01-01");
+  EXPECT_EQ(textOf(list.nearest(at("2099-11-01"))), "2010-06-30");
+  EXPECT_EQ(textOf(list.next(at("2001-01-01"))), "2002-01-01");
+  EXPECT_EQ(textOf(list.previous(at("2001-01-01"))), "nothing");
+  EXPECT_EQ(textOf(list.next(at("2010-06-30"))), "nothing");
+}
+
+TEST(TimeDimension, StepsThroughMonthsByTheCalendar) {
+  const TimeDimension months = dimension("1948-01-01/1948-03-01/P1M,2015-01-31/2016-01-31/P1M");
+  EXPECT_EQ(months.count(), 3U + 13U);
+  EXPECT_EQ(textOf(months.atOrBefore(at("1948-02-15"))), "1948-02-01");
+  EXPECT_EQ(textOf(months.atOrBefore(at("2000-02-15"))), "1948-03-01");
+  EXPECT_EQ(textOf(months.next(at("1948-03-01"))), "2015-01-31");
+  EXPECT_EQ(textOf(months.next(at("2015-01-31"))), "2015-02-28");  // and not further from there
+  EXPECT_EQ(textOf(months.next(at("2015-02-28"))), "2015-03-31");
+  EXPECT_EQ(textOf(months.last()), "2016-01-31");
+  EXPECT_EQ(dimension("1990/2000/P1Y").count(), 11U);
+  EXPECT_EQ(textOf(dimension("1990/2000/P1Y").next(at("1993-06-01"))), "1994");
+}
+
+TEST(TimeDimension, NeverExpandsIntervals) {
+  // The oracle is std::chrono.
+  using namespace std::chrono;
+  const auto minutes = duration_cast<std::chrono::minutes>(sys_days(2013y / 12 / 31) - sys_days(1995y / 1 / 1)).count();
+  const TimeDimension radar = dimension("1995-01-01/2013-12-31/PT5M", "2006-06-23T03:10:00Z");
+  EXPECT_EQ(radar.count(), static_cast<std::uint64_t>(minutes / 5 + 1));
+  EXPECT_EQ(textOf(radar.atOrBefore(at("2006-06-23T03:14:59"))), "2006-06-23T03:10:00");
+  EXPECT_EQ(textOf(radar.next(at("2006-06-23T03:14:59"))), "2006-06-23T03:15:00");
+  EXPECT_EQ(textOf(radar.defaultValue()), "2006-06-23T03:10:00Z");
+  const TimeDimension milliseconds = dimension("0001-01-01/9999-12-31/PT0.001S");
+  EXPECT_GT(milliseconds.count(), 300'000'000'000'000U);
+  EXPECT_EQ(textOf(milliseconds.atOrBefore(at("2006-06-23T03:14:59.5"))), "2006-06-23T03:14:59");
+}
+
+TEST(TimeDimension, LeapSecondsDoNotShiftSteps) {
+  const TimeDimension steps = dimension("2015-06-30T23:00:00Z/2015-07-01T01:00:00Z/PT15M");
+  EXPECT_EQ(steps.count(), 9U);
+  EXPECT_EQ(textOf(steps.atOrBefore(at("2015-06-30T23:59:60"))), "2015-07-01T00:00:00Z");
+  EXPECT_EQ(textOf(steps.next(at("2015-06-30T23:45:00"))), "2015-07-01T00:00:00Z");
+  EXPECT_NEAR(steps.next(at("2015-06-30T23:45:00"))->time - at("2015-06-30T23:45:00"), 901.0, 1e-3);
+}
+
+TEST(TimeDimension, ContinuousIntervalsHaveEveryInstant) {
+  for (const char* text : {"2000-01-01T00:00:00Z/2001-01-01T00:00:00Z", "2000-01-01T00:00:00Z/2001-01-01T00:00:00Z/0",
+                           "2000-01-01T00:00:00Z/2001-01-01T00:00:00Z/PT0S"}) {
+    const TimeDimension any = dimension(text);
+    EXPECT_EQ(any.count(), 1U) << text;
+    EXPECT_EQ(textOf(any.atOrBefore(at("2000-05-05T05:05:05"))), "2000-05-05T05:05:05Z");
+    EXPECT_EQ(textOf(any.atOrBefore(at("2005-05-05"))), "2001-01-01T00:00:00Z");
+    EXPECT_EQ(textOf(any.next(at("2000-05-05T05:05:05"))), "2000-05-05T05:05:06Z");
+    EXPECT_EQ(textOf(any.previous(at("2000-05-05T05:05:05"))), "2000-05-05T05:05:04Z");
+    EXPECT_EQ(textOf(any.previous(at("2000-01-01"))), "nothing");
+    EXPECT_EQ(textOf(any.next(at("2001-01-01"))), "nothing");
+  }
+}
+
+TEST(TimeDimension, ThePresentIsWhatItIsTold) {
+  const TimeDimension running = dimension("2026-11-20T00:00:00Z/PRESENT/PT6H", "current");
+  EXPECT_EQ(textOf(running.last()), "2026-11-25T12:00:00Z");
+  EXPECT_EQ(textOf(running.defaultValue()), "2026-11-25T12:00:00Z");
+  EXPECT_EQ(textOf(dimension("2026-11-20/now/P1D").last()), "2026-11-25");
+  EXPECT_EQ(textOf(dimension("2020-01-01/P1Y/P1M").last()), "2021-01-01");
+}
+
+TEST(TimeDimension, KeepsTheRestOfWhatIsMalformed) {
+  const TimeDimension mixed = dimension(
+      "2015-04-27T16:15:00/2015-04-27T18:45:00/PBAD,2015-05-01,rubbish,2016-01-01/2015-01-01/P1D,1/2/3/4,"
+      "2017-01-01/2017-01-03/P1D",
+      "never");
+  EXPECT_EQ(mixed.count(), 4U);
+  EXPECT_EQ(mixed.problems().size(), 5U);
+  EXPECT_NE(mixed.problems()[0].find("PBAD"), std::string::npos);
+  EXPECT_EQ(textOf(mixed.defaultValue()), "2017-01-03");
+  EXPECT_TRUE(dimension("").isEmpty());
+  EXPECT_TRUE(dimension(",,,").isEmpty());
+  EXPECT_EQ(textOf(dimension("").nearest(now)), "nothing");
+}
+
+TEST(TimeDimension, RealOnesAreUnderstood) {
+  const std::string path = sharedData("time_dimensions.tsv");
+  MERIDIAN_NEEDS(path);
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  int count = 0;
+  while (std::getline(file, line)) {
+    const std::size_t tab = line.find('\t');
+    const std::string values = line.substr(0, tab);
+    const TimeDimension real = dimension(values, line.substr(tab + 1, line.find('\t', tab + 1) - tab - 1));
+    if (values.find("PBAD") != std::string::npos) {
+      EXPECT_TRUE(real.isEmpty());
+      continue;
+    }
+    ++count;
+    EXPECT_TRUE(real.problems().empty()) << line << ": " << real.problems().front();
+    ASSERT_FALSE(real.isEmpty()) << line;
+    // From the last to the one before and back; at a value, the value; values lie where their texts say.
+    const TimeValue last = *real.last();
+    EXPECT_EQ(textOf(real.nearest(last.time)), last.text) << line;
+    EXPECT_EQ(textOf(real.atOrBefore(last.time)), last.text) << line;
+    EXPECT_EQ(textOf(real.atOrBefore(last.time + 1e9)), last.text) << line;
+    EXPECT_FALSE(real.next(last.time)) << line;
+    EXPECT_EQ(readInstant(last.text)->at, calendarOf(last.time)) << line;
+    if (const auto before = real.previous(last.time)) {
+      EXPECT_LT(before->time, last.time) << line;
+      EXPECT_EQ(textOf(real.next(before->time)), last.text) << line;
+    }
+    if (values.find('/') == std::string::npos) {
+      EXPECT_EQ(real.count(), split(values, ",").size()) << line;
+    }
+  }
+  EXPECT_GE(count, 330);
+}
+
+}  // namespace
+}  // namespace meridian::globebrowsing
