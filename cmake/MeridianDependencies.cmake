@@ -5,6 +5,7 @@ find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(GDAL REQUIRED)
+find_package(pugixml REQUIRED)
 
 # meridian_pkg_config(NAME MODULE): the imported target PkgConfig::NAME.
 macro(meridian_pkg_config NAME MODULE)
