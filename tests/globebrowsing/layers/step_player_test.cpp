@@ -196,6 +196,7 @@ TEST_F(StepPlayerTest, AJumpShowsNothingOnItsWay) {
   for (double time = 1000.0; time < 1200.0; time += 50.0) {
     frame(time);
   }
+  frame(1150.0);
   EXPECT_EQ(ahead(), (std::vector<double>{1200.0, 1300.0}));
   frame(50'000.0);
   EXPECT_EQ(shown(), 1100.0) << "1200 is open, but nobody asked for it";
