@@ -1,5 +1,6 @@
 #include "host/api/time.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -16,6 +17,9 @@ namespace {
 
 constexpr double j2000 = 2451545.0;
 constexpr double secondsPerDay = 86400.0;
+constexpr Time::UtcInstant firstInstant = std::chrono::sys_days(std::chrono::year(-4000) / 1 / 1);
+constexpr Time::UtcInstant lastInstant =
+    std::chrono::sys_days(std::chrono::year(10000) / 1 / 1) - std::chrono::milliseconds(1);
 
 /// TDB - TT in seconds at the geocentre; the argument may be TT or TDB, the difference does not matter.
 double tdbMinusTt(const Time::JulianDate& date) {
@@ -31,6 +35,14 @@ Time::JulianDate utcFromTdb(const Time::JulianDate& tdb) {
   // A "dubious year" warning means that leap seconds are unknown there; the latest known ones are then used.
   eraTaiutc(tai.day, tai.fraction, &utc.day, &utc.fraction);
   return utc;
+}
+
+Time timeFromUtc(const Time::JulianDate& utc) {
+  Time::JulianDate tai{};
+  Time::JulianDate tt{};
+  eraUtctai(utc.day, utc.fraction, &tai.day, &tai.fraction);
+  eraTaitt(tai.day, tai.fraction, &tt.day, &tt.fraction);
+  return Time((tt.day - j2000) * secondsPerDay + tt.fraction * secondsPerDay + tdbMinusTt(tt));
 }
 
 struct CalendarTime {
@@ -142,24 +154,47 @@ Result<Time> Time::fromUtc(std::string_view text) {
   if (status < 0 || status == 2 || status == 3) {
     return bad("the calendar has no such date or time of day");
   }
-  JulianDate tai{};
-  JulianDate tt{};
-  eraUtctai(utc.day, utc.fraction, &tai.day, &tai.fraction);
-  eraTaitt(tai.day, tai.fraction, &tt.day, &tt.fraction);
-  return Time((tt.day - j2000) * secondsPerDay + tt.fraction * secondsPerDay + tdbMinusTt(tt));
+  return timeFromUtc(utc);
 }
 
 Time Time::now() {
+  return fromUtcInstant(std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now()));
+}
+
+Time Time::fromUtcInstant(UtcInstant instant) {
   using namespace std::chrono;
-  const auto instant = floor<milliseconds>(system_clock::now());
+  instant = std::clamp(instant, firstInstant, lastInstant);
   const auto days = floor<std::chrono::days>(instant);
   const year_month_day date(days);
   const hh_mm_ss clock(instant - days);
-  const std::string text =
-      fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:03}", static_cast<int>(date.year()),
-                  static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), clock.hours().count(),
-                  clock.minutes().count(), clock.seconds().count(), clock.subseconds().count());
-  return fromUtc(text).value_or(Time());
+  JulianDate utc{};
+  eraDtf2d("UTC", static_cast<int>(date.year()), static_cast<int>(static_cast<unsigned>(date.month())),
+           static_cast<int>(static_cast<unsigned>(date.day())), static_cast<int>(clock.hours().count()),
+           static_cast<int>(clock.minutes().count()),
+           static_cast<double>(clock.seconds().count()) + 1e-3 * static_cast<double>(clock.subseconds().count()),
+           &utc.day, &utc.fraction);
+  return timeFromUtc(utc);
+}
+
+Time::UtcInstant Time::utcInstant() const {
+  using namespace std::chrono;
+  constexpr double tenThousandYears = 3.2e11;
+  if (!(std::abs(seconds_) < tenThousandYears)) {
+    return seconds_ < 0.0 ? firstInstant : lastInstant;
+  }
+  const JulianDate date = julianDateUtc();
+  int year = 0;
+  int month = 0;
+  int day = 0;
+  std::array<int, 4> clock{};
+  if (eraD2dtf("UTC", 3, date.day, date.fraction, &year, &month, &day, clock.data()) < 0) {
+    return seconds_ < 0.0 ? firstInstant : lastInstant;
+  }
+  const auto midnight = sys_days(std::chrono::year(year) / month / day);
+  const bool isLeapSecond = clock[2] == 60;
+  return std::clamp<UtcInstant>(midnight + hours(clock[0]) + minutes(clock[1]) +
+                                    (isLeapSecond ? milliseconds(59'999) : seconds(clock[2]) + milliseconds(clock[3])),
+                                firstInstant, lastInstant);
 }
 
 Time::JulianDate Time::julianDateTdb() const {

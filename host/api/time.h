@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <compare>
 #include <string>
 #include <string_view>
@@ -20,6 +21,12 @@ class Time {
   [[nodiscard]] static Result<Time> fromUtc(std::string_view text);
   /// The machine's clock.
   [[nodiscard]] static Time now();
+
+  /// UTC's calendar without its leap seconds, for arithmetic with days, months and years; to the nearest millisecond. A
+  /// leap second is its minute's last millisecond. Outside the years -4000..9999 it is that range's end.
+  using UtcInstant = std::chrono::sys_time<std::chrono::milliseconds>;
+  [[nodiscard]] UtcInstant utcInstant() const;
+  [[nodiscard]] static Time fromUtcInstant(UtcInstant instant);
 
   [[nodiscard]] constexpr double tdbSeconds() const { return seconds_; }
   /// "2026-11-22T21:17:05.250", rounded to the millisecond.

@@ -216,7 +216,7 @@ void RenderableGlobe::update(const FrameContext& frame) {
   drawn_ = graphics_ != nullptr && enabled.get() && opacity.get() > 0.0 && (renderAtDistance.get() || radius >= 0.5);
   if (drawn_) {
     framesUnseen_ = 0;
-    layers_.update();
+    layers_.update(frame.time);
     const std::optional<TexturePoolShares::Share> share = services_.poolShares().bid(this, radius);
     if (share && surfaceError_.empty()) {
       updateSurfaces(frame, *share);

@@ -23,6 +23,7 @@ namespace meridian::globebrowsing {
 struct CompositeKey {
   CompositeKind kind = CompositeKind::Base;
   TileIndex index;
+  std::uint8_t side = 0;  ///< 0 or 1: composites of two times lie side by side
   bool operator==(const CompositeKey&) const = default;
 };
 
@@ -31,7 +32,8 @@ struct CompositeKey {
 template <>
 struct std::hash<meridian::globebrowsing::CompositeKey> {
   std::size_t operator()(const meridian::globebrowsing::CompositeKey& key) const noexcept {
-    return std::hash<meridian::globebrowsing::TileIndex>()(key.index) * 3 + static_cast<std::size_t>(key.kind);
+    return std::hash<meridian::globebrowsing::TileIndex>()(key.index) * 6 + 2 * static_cast<std::size_t>(key.kind) +
+           key.side;
   }
 };
 
@@ -40,6 +42,10 @@ namespace meridian::globebrowsing {
 /// The colours of tiles: decides which tile's composite a chunk draws (its own, or beyond the finest data that of an
 /// ancestor), asks for the raw tiles that it needs, and has it composed. When layers or settings change the composites
 /// of before are drawn until they have been composed anew, nearest first, under the frame's budget.
+///
+/// When a layer moves on to another step in time, composites of the new step are made beside the old; as soon as they
+/// cover all that the last frame drew, they are exchanged at once. If the pool has no room for both, the new ones
+/// replace the old one by one.
 /// Render thread only; a steady frame allocates nothing.
 class CompositeStore {
  public:
@@ -92,6 +98,30 @@ class CompositeStore {
     std::array<std::uint8_t, compositeKindCount> ownerLevel{};  ///< of the tile whose composite is drawn
     bool finer = false;
   };
+  /// The layers of a kind, each at one of its steps.
+  struct Generation {
+    std::vector<LayerStepPointer> steps;  ///< by enabled layer; null where it has none yet
+    std::uint8_t side = 0;                ///< of its composites' keys
+    std::uint64_t since = 0;              ///< composites with an earlier stamp show other steps
+    std::uint64_t stamp = 0;              ///< of the present settings
+  };
+  struct Drawn {
+    TileIndex index;
+    int colourLevel = 0;
+  };
+  struct KindState {
+    std::uint64_t version = 0;  ///< of the group's settings
+    OpeningWait opening;
+    Generation shown;
+    Generation next;
+    bool hasNext = false;  ///< `next` is being composed
+    bool crowded = false;  ///< the pool has no room for it
+    bool hasSteps = false;
+    std::uint64_t lastStamp = 0;
+    std::unordered_map<TileIndex, std::uint8_t> nextOwnerLevels;
+    std::vector<Drawn> drawn;  ///< since the last compose(), where the kind has steps
+    bool wasDrawn = false;     ///< in the last frame: a surface that is still filled is not
+  };
   struct Request {
     CompositeKey key;
     double priority = 0.0;
@@ -99,9 +129,24 @@ class CompositeStore {
     std::size_t partCount = 0;
   };
 
+  [[nodiscard]] KindState& of(CompositeKind kind) { return kinds_[static_cast<std::size_t>(kind)]; }
+  [[nodiscard]] const KindState& of(CompositeKind kind) const { return kinds_[static_cast<std::size_t>(kind)]; }
+  [[nodiscard]] const Generation& generationOf(const CompositeKey& key) const;
+
+  /// Whether facts are out of date.
+  bool updateKind(CompositeKind kind);
+  void takeSteps(KindState& state, const std::vector<Layer*>& enabled);
+  void beginNext(KindState& state, const std::vector<Layer*>& enabled);
+  void exchange(KindState& state);
+  [[nodiscard]] bool nextCovers(CompositeKind kind) const;
+  void wantNext(CompositeKind kind);
+  void fetchAhead(CompositeKind kind);
+
   [[nodiscard]] const Facts& facts(const TileIndex& index) const;
-  [[nodiscard]] bool anyFiner(CompositeKind kind, const TileIndex& index) const;
-  [[nodiscard]] TileIndex owner(CompositeKind kind, const TileIndex& index, int colourLevel) const;
+  [[nodiscard]] bool anyFiner(CompositeKind kind, const Generation& generation, const TileIndex& index) const;
+  [[nodiscard]] CompositeKey shownKey(CompositeKind kind, const TileIndex& index, int colourLevel) const;
+  [[nodiscard]] CompositeKey nextKey(CompositeKind kind, const TileIndex& index, int colourLevel) const;
+  [[nodiscard]] std::uint8_t nextOwnerLevel(CompositeKind kind, const TileIndex& index) const;
   State wantComposite(const CompositeKey& key, double priority);
   [[nodiscard]] State stateOf(const CompositeKey& key) const;
   bool gather(const CompositeKey& key, double priority);
@@ -113,15 +158,15 @@ class CompositeStore {
   TileStreamer& streamer_;
   std::unique_ptr<Composer> composer_;
   SlotPool<CompositeKey> slots_;
-  std::vector<std::uint64_t> slotVersions_;  ///< of what each slot's composite was made from
-  std::array<std::uint64_t, compositeKindCount> versions_{};
-  std::array<OpeningWait, compositeKindCount> openings_;
+  std::vector<std::uint64_t> slotStamps_;  ///< of what each slot's composite was made from
+  mutable std::array<KindState, compositeKindCount> kinds_;
   mutable std::unordered_map<TileIndex, Facts> facts_;
   std::vector<Request> requests_;
   std::vector<CompositionPart> parts_;
   std::vector<TileDataPointer> held_;  ///< the raw tiles of parts_
   std::uint64_t frame_ = 0;
-  std::size_t missing_ = 0;   ///< composites wanted in this frame that are not current
+  std::size_t missing_ = 0;   ///< shown composites wanted in this frame that are not current
+  bool lackedSome_ = false;   ///< in the last frame
   std::size_t unplaced_ = 0;  ///< of these, those that have their raw tiles but no room
 };
 

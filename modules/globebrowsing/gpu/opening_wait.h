@@ -14,11 +14,8 @@ class OpeningWait {
   /// Every frame.
   void update(const LayerGroup& group) {
     const auto& enabled = group.enabledLayers();
-    const bool opening = std::any_of(enabled.begin(), enabled.end(), [](const Layer* layer) {
-      const TileProvider::State state = layer->provider()->state();
-      return layer->sampling() == Sampling::Tile &&
-             (state == TileProvider::State::NotOpened || state == TileProvider::State::Opening);
-    });
+    const bool opening =
+        std::any_of(enabled.begin(), enabled.end(), [](const Layer* layer) { return layer->isOpening(); });
     const Clock::time_point now = Clock::now();
     if (opening && !opening_) {
       since_ = now;

@@ -78,9 +78,10 @@ bool SurfaceStore::gather(const TileIndex& index, double priority) {
   for (std::size_t i = 0; i < enabled.size(); ++i) {
     const Layer& layer = *enabled[i];
     gathered_[i] = {};
-    if (layer.isReady() && layer.provider()->overlaps(*tiling_, index)) {
-      gathered_[i] = streamer_.request({layer.stream(), index}, priority,
-                                       [&] { return std::make_unique<HeightJob>(layer.provider(), tiling_, index); });
+    if (layer.isReady() && layer.step()->tiles()->overlaps(*tiling_, index)) {
+      gathered_[i] = streamer_.request({layer.stream(), index}, priority, [&] {
+        return std::make_unique<HeightJob>(layer.step()->tiles(), tiling_, index);
+      });
       all = all && gathered_[i].state != TileAnswer::State::Pending;
     }
   }
@@ -163,7 +164,7 @@ bool SurfaceStore::hasFinerHeights(const TileIndex& index) const {
   }
   const std::vector<Layer*>& enabled = layers_.group(LayerGroupId::HeightLayers).enabledLayers();
   const bool finer = std::any_of(enabled.begin(), enabled.end(), [&](const Layer* layer) {
-    return layer->isReady() && layer->provider()->hasFinerHeights(*tiling_, index);
+    return layer->isReady() && layer->step()->tiles()->hasFinerHeights(*tiling_, index);
   });
   return finer_.emplace(index, finer).first->second;
 }
@@ -181,8 +182,7 @@ SurfaceStore::Nearest SurfaceStore::nearest(const TileIndex& index) const {
 
 std::string SurfaceStore::waitingFor() const {
   for (const Layer* layer : layers_.group(LayerGroupId::HeightLayers).enabledLayers()) {
-    const TileProvider::State state = layer->provider()->state();
-    if (state == TileProvider::State::NotOpened || state == TileProvider::State::Opening) {
+    if (layer->awaitsData()) {
       return fmt::format("{} is being opened", layer->uri());
     }
   }

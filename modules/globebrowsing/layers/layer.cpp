@@ -52,16 +52,27 @@ Layer::Layer(LayerDescription description, LayerGroupId group, const LayerServic
       request_(std::move(description.request)),
       provider_(std::move(description.provider)),
       services_(services),
-      stream_(services.streamer != nullptr ? services.streamer->newStream() : 0),
+      player_(services.workers, services.streamer),
       changed_(std::move(changed)) {
   addProperties();
   connectProperties();
+  attachProvider();
 }
 
 Layer::~Layer() {
-  if (services_.streamer != nullptr) {
-    services_.streamer->forget(stream_);
+  // A worker that still opens the provider may be the last to hold it.
+  if (PropertyOwner* owner = provider_->properties()) {
+    removeChild(*owner);
   }
+}
+
+void Layer::attachProvider() {
+  if (PropertyOwner* owner = provider_->properties()) {
+    addChild(*owner);
+  }
+  step_ = provider_->steps() != nullptr
+              ? nullptr
+              : std::make_shared<const LayerStep>(provider_, services_.streamer, provider_.get());
 }
 
 void Layer::addProperties() {
@@ -113,7 +124,15 @@ void Layer::connectProperties() {
 }
 
 bool Layer::isReady() const {
-  return isEnabled() && sampling_ == Sampling::Tile && provider_->state() == TileProvider::State::Ready;
+  return isEnabled() && sampling_ == Sampling::Tile && step_ != nullptr &&
+         step_->tiles()->state() == TileProvider::State::Ready;
+}
+
+bool Layer::isOpening() const {
+  const TileProvider::State state = provider_->state();
+  return sampling_ == Sampling::Tile &&
+         (state == TileProvider::State::NotOpened || state == TileProvider::State::Opening ||
+          (state == TileProvider::State::Ready && step_ == nullptr && player_.awaits()));
 }
 
 void Layer::restart() {
@@ -122,11 +141,12 @@ void Layer::restart() {
     lastError.put(provider.error().message());
     return;
   }
-  provider_ = std::move(*provider);
-  if (services_.streamer != nullptr) {
-    services_.streamer->forget(stream_);
-    stream_ = services_.streamer->newStream();
+  if (PropertyOwner* owner = provider_->properties()) {
+    removeChild(*owner);
   }
+  player_.clear();
+  provider_ = std::move(*provider);
+  attachProvider();
   seenState_ = TileProvider::State::NotOpened;
   seenError_ = nullptr;
   status.put(std::string(stateName(seenState_)));
@@ -134,11 +154,32 @@ void Layer::restart() {
   changed_(*this, Change::Settings);
 }
 
-void Layer::update() {
+void Layer::update(const Time& now) {
   if (isEnabled() && services_.workers != nullptr && provider_->state() == TileProvider::State::NotOpened) {
     TileProvider::openOn(*services_.workers, provider_);
   }
   updateStatus();
+  if (provider_->steps() != nullptr && provider_->state() == TileProvider::State::Ready) {
+    play(now);
+  }
+}
+
+void Layer::play(const Time& now) {
+  if (!isEnabled()) {
+    player_.rest();
+    return;
+  }
+  player_.update(*provider_, now);
+  if (player_.current() == step_) {
+    return;
+  }
+  const bool isFirst = step_ == nullptr;
+  step_ = player_.current();
+  lastError.put(player_.error());
+  // Colours of another step are composed beside those that are drawn, and exchanged; heights are composed anew.
+  if (isFirst || group_ == LayerGroupId::HeightLayers) {
+    changed_(*this, Change::Settings);
+  }
 }
 
 void Layer::updateStatus() {
@@ -152,7 +193,7 @@ void Layer::updateStatus() {
       changed_(*this, Change::Settings);
     }
   }
-  const Error* tileError = services_.streamer != nullptr ? services_.streamer->lastError(stream_) : nullptr;
+  const Error* tileError = services_.streamer != nullptr ? services_.streamer->lastError(stream()) : nullptr;
   if (tileError != seenError_) {
     seenError_ = tileError;
     lastError.put(tileError != nullptr ? tileError->message() : std::string());

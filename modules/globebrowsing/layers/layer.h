@@ -11,6 +11,7 @@
 #include "globebrowsing/layers/blend.h"
 #include "globebrowsing/layers/layer_description.h"
 #include "globebrowsing/layers/layer_group.h"
+#include "globebrowsing/layers/step_player.h"
 #include "globebrowsing/layers/structure_key.h"
 #include "globebrowsing/providers/tile_provider.h"
 #include "host/api/property.h"
@@ -53,15 +54,25 @@ class Layer final : public PropertyOwner {
   [[nodiscard]] Sampling sampling() const { return sampling_; }
   [[nodiscard]] LayerStructure structure() const { return {group_, sampling_, blend(), adjustment()}; }
 
+  /// What the layer's table describes. Ask for tiles at step().
   [[nodiscard]] const std::shared_ptr<TileProvider>& provider() const { return provider_; }
-  /// Of this layer's raw tiles in the TileStreamer; another after Reset, 0 without a streamer.
-  [[nodiscard]] std::uint32_t stream() const { return stream_; }
-  /// Whether its tiles can be asked for: enabled, and the provider is open.
+  /// The tiles to show: those of the provider, or of its step at the time of the last update. Another after Reset and
+  /// with each step; null while the first step is being opened.
+  [[nodiscard]] const LayerStepPointer& step() const { return step_; }
+  /// Steps whose tiles are worth fetching although nobody sees them yet, nearest first.
+  [[nodiscard]] const std::vector<LayerStepPointer>& ahead() const { return player_.ahead(); }
+  /// Of step()'s tiles in the TileStreamer; 0 without a streamer or step.
+  [[nodiscard]] std::uint32_t stream() const { return step_ ? step_->stream() : 0; }
+  /// Whether its tiles can be asked for: enabled, and step()'s provider is open.
   [[nodiscard]] bool isReady() const;
+  /// Whether it has nothing to show yet because its data are being opened.
+  [[nodiscard]] bool isOpening() const;
+  /// The same, or it shows an earlier step because the present one is being opened.
+  [[nodiscard]] bool awaitsData() const { return isOpening() || player_.awaits(); }
 
-  /// Opens the provider when the layer has been enabled, and brings Status and LastError up to date. Every frame;
-  /// allocates only when something changed.
-  void update();
+  /// Opens the provider when the layer has been enabled, goes to the step of that time, and brings Status and LastError
+  /// up to date. Every frame; allocates only when something changed.
+  void update(const Time& now);
   /// Whether Remove was triggered; the manager then deletes the layer in its next update.
   [[nodiscard]] bool wantsRemoval() const { return wantsRemoval_; }
 
@@ -91,7 +102,9 @@ class Layer final : public PropertyOwner {
  private:
   void addProperties();
   void connectProperties();
+  void attachProvider();
   void restart();
+  void play(const Time& now);
   void updateStatus();
 
   LayerGroupId group_;
@@ -101,7 +114,8 @@ class Layer final : public PropertyOwner {
   ProviderRequest request_;
   std::shared_ptr<TileProvider> provider_;
   LayerServices services_;
-  std::uint32_t stream_ = 0;
+  StepPlayer player_;
+  LayerStepPointer step_;
   std::function<void(const Layer&, Change)> changed_;
   TileProvider::State seenState_ = TileProvider::State::NotOpened;
   const Error* seenError_ = nullptr;

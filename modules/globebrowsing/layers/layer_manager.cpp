@@ -117,10 +117,10 @@ Result<void> LayerGroup::move(std::string_view identifier, int position) {
   return {};
 }
 
-void LayerGroup::update() {
+void LayerGroup::update(const Time& now) {
   bool removals = false;
   for (const std::unique_ptr<Layer>& layer : layers_) {
-    layer->update();
+    layer->update(now);
     removals = removals || layer->wantsRemoval();
   }
   if (removals) {
@@ -225,9 +225,9 @@ std::size_t LayerManager::layerCount() const {
   return count;
 }
 
-void LayerManager::update() {
+void LayerManager::update(const Time& now) {
   for (const auto& group : groups_) {
-    group->update();
+    group->update(now);
   }
 }
 

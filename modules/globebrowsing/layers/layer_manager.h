@@ -45,8 +45,8 @@ class LayerGroup final : public PropertyOwner {
   /// To that place among all layers of the group (clamped), taking the z of the neighbour whose place it takes. Errors:
   /// no such layer.
   Result<void> move(std::string_view identifier, int position);
-  /// Every frame: layers' updates, removals.
-  void update();
+  /// Every frame, with the scene's time: layers' updates, removals.
+  void update(const Time& now);
 
   BoolProperty blendTileLevels{
       {"BlendTileLevels", "Blend tile levels", "Whether neighbouring levels of detail are blended into each other"},
@@ -86,8 +86,8 @@ class LayerManager final : public PropertyOwner {
   [[nodiscard]] const LayerGroup& group(LayerGroupId id) const { return *groups_[static_cast<std::size_t>(id)]; }
   [[nodiscard]] std::size_t layerCount() const;
 
-  /// Once a frame, before anything asks for versions.
-  void update();
+  /// Once a frame, with the scene's time, before anything asks for versions.
+  void update(const Time& now = {});
   /// The sum of the groups' versions: grows when any of them does.
   [[nodiscard]] std::uint64_t structureVersion() const;
   [[nodiscard]] std::uint64_t settingsVersion(LayerGroupId id) const { return group(id).settingsVersion(); }

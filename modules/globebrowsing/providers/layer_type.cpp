@@ -30,7 +30,8 @@ const std::vector<std::string>& layerTypeNames() {
                                               "TemporalTileProvider",      "TileIndexTileProvider",
                                               "TileProviderByDate",        "TileProviderByIndex",
                                               "TileProviderByLevel",       "SolidColor",
-                                              "SpoutImageProvider",        "VideoTileProvider"};
+                                              "SpoutImageProvider",        "VideoTileProvider",
+                                              "GraticuleTileProvider"};
   return names;
 }
 

@@ -8,8 +8,8 @@
 
 namespace meridian::globebrowsing {
 
-/// The types of layers that assets may name, numbered as OpenSpace numbers them. Those that have a provider here are in
-/// provider_registry.h.
+/// The types of layers that assets may name, numbered as OpenSpace numbers them, and after those ours. Those that have
+/// a provider here are in provider_registry.h.
 enum class LayerType : std::uint8_t {
   DefaultTileProvider,
   SingleImageProvider,
@@ -22,7 +22,8 @@ enum class LayerType : std::uint8_t {
   TileProviderByLevel,
   SolidColor,
   SpoutImageProvider,
-  VideoTileProvider
+  VideoTileProvider,
+  GraticuleTileProvider
 };
 
 /// In the order of their numbers.

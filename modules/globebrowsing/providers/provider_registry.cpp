@@ -4,8 +4,17 @@
 #include <array>
 
 #include "globebrowsing/providers/default_tile_provider.h"
+#include "globebrowsing/providers/graticule_tile_provider.h"
+#include "globebrowsing/providers/image_sequence_tile_provider.h"
 #include "globebrowsing/providers/single_image_provider.h"
+#include "globebrowsing/providers/size_reference_tile_provider.h"
 #include "globebrowsing/providers/solid_colour_provider.h"
+#include "globebrowsing/providers/temporal_document.h"
+#include "globebrowsing/providers/temporal_tile_provider.h"
+#include "globebrowsing/providers/tile_index_tile_provider.h"
+#include "globebrowsing/providers/tile_provider_by_date.h"
+#include "globebrowsing/providers/tile_provider_by_index.h"
+#include "globebrowsing/providers/tile_provider_by_level.h"
 
 namespace meridian::globebrowsing {
 
@@ -19,6 +28,11 @@ std::string namesOfProviders() {
   return names;
 }
 
+template <class Provider>
+ProviderType typeOf(LayerType type, std::string description) {
+  return {type, std::move(description), &Provider::schema(), &Provider::make};
+}
+
 const ProviderType* find(LayerType type) {
   const std::span<const ProviderType> types = providerTypes();
   const auto found = std::find_if(types.begin(), types.end(), [type](const auto& one) { return one.type == type; });
@@ -28,12 +42,18 @@ const ProviderType* find(LayerType type) {
 }  // namespace
 
 std::span<const ProviderType> providerTypes() {
-  static const std::array types{ProviderType{LayerType::DefaultTileProvider, "any georeferenced raster",
-                                             &DefaultTileProvider::schema(), &DefaultTileProvider::make},
-                                ProviderType{LayerType::SingleImageProvider, "the whole of one image in every tile",
-                                             &SingleImageProvider::schema(), &SingleImageProvider::make},
-                                ProviderType{LayerType::SolidColor, "one colour everywhere",
-                                             &SolidColourProvider::schema(), &SolidColourProvider::make}};
+  static const std::array types{
+      typeOf<DefaultTileProvider>(LayerType::DefaultTileProvider, "any georeferenced raster"),
+      typeOf<SingleImageProvider>(LayerType::SingleImageProvider, "the whole of one image in every tile"),
+      typeOf<ImageSequenceTileProvider>(LayerType::ImageSequenceTileProvider, "one image of a folder at a time"),
+      typeOf<SizeReferenceTileProvider>(LayerType::SizeReferenceTileProvider, "in each tile how wide it is"),
+      typeOf<TemporalTileProvider>(LayerType::TemporalTileProvider, "another raster for each time"),
+      typeOf<TileIndexTileProvider>(LayerType::TileIndexTileProvider, "in each tile its index"),
+      typeOf<TileProviderByDate>(LayerType::TileProviderByDate, "a provider for each stretch of time"),
+      typeOf<TileProviderByIndex>(LayerType::TileProviderByIndex, "a provider for most tiles, others for some"),
+      typeOf<TileProviderByLevel>(LayerType::TileProviderByLevel, "a provider for each range of levels"),
+      typeOf<SolidColourProvider>(LayerType::SolidColor, "one colour everywhere"),
+      typeOf<GraticuleTileProvider>(LayerType::GraticuleTileProvider, "parallels and meridians")};
   return types;
 }
 
@@ -44,6 +64,11 @@ std::string placeOf(const ProviderRequest& request, std::string_view key) {
 }
 
 Result<LayerType> layerTypeOf(const ProviderRequest& request) {
+  // Older assets hide a temporal layer in the text of its FilePath.
+  const Value* filePath = request.table.find("FilePath");
+  if (filePath != nullptr && filePath->string() != nullptr && isTemporalDocument(*filePath->string())) {
+    return LayerType::TemporalTileProvider;
+  }
   const Value* value = request.table.find("Type");
   if (value == nullptr || value->isNil()) {
     return LayerType::DefaultTileProvider;

@@ -39,12 +39,12 @@ Result<void> TileProvider::openGuarded() {
   }
 }
 
-void TileProvider::openOn(WorkerPool& workers, std::shared_ptr<TileProvider> provider) {
+void TileProvider::openOn(WorkerPool& workers, std::shared_ptr<TileProvider> provider, bool logFailure) {
   State expected = State::NotOpened;
   if (provider->state_.compare_exchange_strong(expected, State::Opening)) {
-    workers.post([provider = std::move(provider)](const std::stop_token&) {
+    workers.post([provider = std::move(provider), logFailure](const std::stop_token&) {
       // The outcome is kept in state() and error(), but a user who looks at a bare globe looks at the log first.
-      if (const Result<void> opened = provider->open(); !opened) {
+      if (const Result<void> opened = provider->open(); !opened && logFailure) {
         log::error("{}", opened.error().message());
       }
     });
@@ -85,11 +85,15 @@ bool TileProvider::overlaps(const Tiling& tiling, const TileIndex& index) const 
 }
 
 bool TileProvider::hasFinerColours(const Tiling& tiling, const TileIndex& index) const {
-  return state() == State::Ready && dataFiner(tiling, index, colourLayout);
+  return hasFiner(tiling, index, colourLayout);
 }
 
 bool TileProvider::hasFinerHeights(const Tiling& tiling, const TileIndex& index) const {
-  return state() == State::Ready && dataFiner(tiling, index, heightLayout);
+  return hasFiner(tiling, index, heightLayout);
+}
+
+bool TileProvider::hasFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const {
+  return state() == State::Ready && dataFiner(tiling, index, layout);
 }
 
 }  // namespace meridian::globebrowsing

@@ -11,7 +11,13 @@
 #include "globebrowsing/tiling/tiling.h"
 #include "host/api/error.h"
 
+namespace meridian {
+class PropertyOwner;
+}
+
 namespace meridian::globebrowsing {
+
+class TileSteps;
 
 /// Where a layer's tiles come from: one class per layer type, made from the layer's asset table without any input or
 /// output (provider_registry.h), then checked by --validate or opened by a worker. Safe from any thread.
@@ -29,6 +35,13 @@ class TileProvider {
   /// Whether the local data exist, without opening them: what makes a layer usable for --validate.
   [[nodiscard]] virtual Result<void> check() const { return {}; }
 
+  /// Of a provider whose tiles change with time or with its properties; null for all others. Tiles are then asked of
+  /// the steps' providers only.
+  [[nodiscard]] virtual const TileSteps* steps() const { return nullptr; }
+  /// What can be set of it while it runs: the owner "TileProvider" below its layer. Null without any. It is the render
+  /// thread's alone, and a layer takes it out of the tree before it lets the provider go.
+  [[nodiscard]] virtual PropertyOwner* properties() { return nullptr; }
+
   [[nodiscard]] State state() const { return state_.load(std::memory_order_acquire); }
   /// Why it could not be opened; nothing unless Failed.
   [[nodiscard]] std::optional<Error> error() const;
@@ -36,8 +49,8 @@ class TileProvider {
   /// Opens unless it is open, on this thread; may read from disk or network. A call during another's waits for it. The
   /// first outcome stays.
   Result<void> open();
-  /// The same on a worker: Opening at once. A failure is logged.
-  static void openOn(WorkerPool& workers, std::shared_ptr<TileProvider> provider);
+  /// The same on a worker: Opening at once. A failure is logged, unless nobody wants to read so many.
+  static void openOn(WorkerPool& workers, std::shared_ptr<TileProvider> provider, bool logFailure = true);
 
   /// One tile in colourLayout or heightLayout, by and by: where its data come from elsewhere. Null where colours and
   /// heights give it at once (or an error, when not Ready). Provider and tiling outlive the task.
@@ -54,6 +67,8 @@ class TileProvider {
   /// output.
   [[nodiscard]] bool hasFinerColours(const Tiling& tiling, const TileIndex& index) const;
   [[nodiscard]] bool hasFinerHeights(const Tiling& tiling, const TileIndex& index) const;
+  /// The same of either, for providers that are made of others.
+  [[nodiscard]] bool hasFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const;
 
  private:
   /// Called once, before any of the following; those only after it succeeded.

@@ -147,7 +147,7 @@ class GlobeTest : public GpuTest {
 
   void frame() {
     const std::array<View, 1> views{view_};
-    const FrameContext context{{}, 0.0, 0.0, ++number_, views};
+    const FrameContext context{time_, 0.0, 0.0, ++number_, views};
     graphics_->beginFrame();
     for (const auto& [name, renderable] : host_->renderables) {
       renderable->update(context);
@@ -231,6 +231,7 @@ class GlobeTest : public GpuTest {
   std::unique_ptr<FakeHost> host_;
   std::unique_ptr<Module> module_;
   View view_;
+  Time time_;
   std::uint64_t number_ = 0;
 };
 

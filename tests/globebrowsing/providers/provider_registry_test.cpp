@@ -17,7 +17,7 @@ TEST(LayerType, HasOpenSpacesNumbersAndOlderNames) {
   };
   for (const Case& c : {Case{"DefaultTileProvider", 0}, Case{"DefaultTileLayer", 0}, Case{"SingleImageTileLayer", 1},
                         Case{"TemporalTileLayer", 4}, Case{"ByLevelTileLayer", 8}, Case{"SolidColor", 9},
-                        Case{"VideoTileProvider", 11}}) {
+                        Case{"VideoTileProvider", 11}, Case{"GraticuleTileProvider", 12}}) {
     const std::optional<LayerType> type = layerTypeFromName(c.word);
     ASSERT_TRUE(type) << c.word;
     EXPECT_EQ(static_cast<int>(*type), c.number) << c.word;
@@ -51,10 +51,12 @@ TEST(ProviderRegistry, ListsWhatExistsWhenATypeDoesNot) {
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().where, "mars.asset:4: Layers.ColorLayers[1].Type");
   EXPECT_THAT(unknown.error().what, HasSubstr("Magic"));
-  EXPECT_THAT(unknown.error().remedy, HasSubstr("DefaultTileProvider, SingleImageProvider, SolidColor"));
-  const auto unsupported = makeProvider(requestFor({{"Type", "SpoutImageProvider"}}));
-  ASSERT_FALSE(unsupported);
-  EXPECT_THAT(unsupported.error().what, HasSubstr("not supported"));
+  EXPECT_THAT(unknown.error().remedy, HasSubstr("DefaultTileProvider, SingleImageProvider, ImageSequenceTileProvider"));
+  for (const char* type : {"SpoutImageProvider", "SpoutImageTileLayer", "VideoTileProvider", "VideoTileLayer"}) {
+    const auto unsupported = makeProvider(requestFor({{"Type", type}}));
+    ASSERT_FALSE(unsupported);
+    EXPECT_THAT(unsupported.error().what, HasSubstr("not supported"));
+  }
   EXPECT_FALSE(makeProvider(requestFor({{"Type", 3.0}})));
 }
 

@@ -57,6 +57,25 @@ TEST(Time, NeverFailsToWrite) {
   EXPECT_NE(Time(1e300).utc(), "");
 }
 
+TEST(Time, GoesToTheCalendarAndBack) {
+  using namespace std::chrono;
+  struct Case {
+    const char* text;
+    Time::UtcInstant instant;
+  };
+  for (const Case& c : {Case{"2016-02-29T12:30:15.250", sys_days(2016y / 2 / 29) + 12h + 30min + 15'250ms},
+                        Case{"1969-12-31T23:59:59.999", sys_days(1970y / 1 / 1) - 1ms},
+                        Case{"0001-01-01T00:00:00.000", sys_days(1y / 1 / 1)},
+                        Case{"2017-01-01T00:00:00.000", sys_days(2017y / 1 / 1)}}) {
+    EXPECT_EQ(Time::fromUtc(c.text)->utcInstant(), c.instant) << c.text;
+    EXPECT_EQ(Time::fromUtcInstant(c.instant).utc(), c.text);
+  }
+  EXPECT_EQ(Time::fromUtc("2016-12-31T23:59:60.5")->utcInstant(), sys_days(2017y / 1 / 1) - 1ms) << "a leap second";
+  EXPECT_EQ(Time(1e300).utcInstant(), sys_days(10000y / 1 / 1) - 1ms);
+  EXPECT_EQ(Time(-1e300).utcInstant(), sys_days(-4000y / 1 / 1));
+  EXPECT_EQ(Time::fromUtcInstant(Time::UtcInstant::max()).utc(), "9999-12-31T23:59:59.999");
+}
+
 TEST(Time, GivesJulianDates) {
   const Time::JulianDate date = Time(0.0).julianDateTdb();
   EXPECT_EQ(date.day + date.fraction, 2451545.0);

@@ -1,0 +1,169 @@
+#include "globebrowsing/providers/temporal_tile_provider.h"
+
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include "globebrowsing/providers/date_text.h"
+#include "globebrowsing/providers/default_tile_provider.h"
+#include "globebrowsing/providers/inner_providers.h"
+#include "globebrowsing/providers/temporal_document.h"
+#include "host/api/log.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+/// Of an XML file; there is no longer one.
+constexpr std::size_t mostDocumentBytes = std::size_t{1} << 20;
+
+Result<std::string> readDocument(const std::string& path, const std::string& where) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text(mostDocumentBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (file.bad() || (text.empty() && !file.eof())) {
+    return failure("the file " + path + " cannot be read", where, "check its permissions");
+  }
+  if (text.size() > mostDocumentBytes) {
+    return failure("the file " + path + " is no description of a series: it is larger than 1 MiB", where,
+                   "name an <OpenSpaceTemporalGDALDataset>, or use Mode, Prototyped and Folder");
+  }
+  return text;
+}
+
+Result<std::unique_ptr<TimeSeries>> seriesOf(std::string_view document, const ProviderRequest& request) {
+  return readTemporalDocument(document, placeOf(request, "FilePath"))
+      .and_then([&](const PrototypedSeries::Description& description) {
+        return PrototypedSeries::make(description,
+                                      innerRequest(request, "FilePath", valueAt(request.table, "FilePath")));
+      });
+}
+
+/// Null for a file that is to be read first.
+Result<std::unique_ptr<TimeSeries>> seriesOf(const ProviderRequest& request) {
+  if (!valueAt(request.table, "Folder").isNil()) {
+    return FolderSeries::make(request);
+  }
+  if (!valueAt(request.table, "Prototyped").isNil()) {
+    return PrototypedSeries::make(request);
+  }
+  const std::string* filePath = valueAt(request.table, "FilePath").string();
+  if (filePath == nullptr || filePath->empty()) {
+    return failure("a temporal layer needs a table Prototyped or Folder", placeOf(request, "Mode"),
+                   "give one of them, and Mode with its name");
+  }
+  if (dataPath(*filePath, request.folder).kind == DataPath::Kind::File) {
+    return nullptr;
+  }
+  return seriesOf(*filePath, request);
+}
+
+}  // namespace
+
+const Schema& TemporalTileProvider::schema() {
+  using Type = Schema::Type;
+  static const Schema fields(
+      {{"Mode",
+        Type::String,
+        "which of the two tables says where the data are",
+        false,
+        {},
+        {},
+        {"Prototyped", "Folder"}},
+       {"Prototyped", Type::Table, "Time, TemporalResolution, TimeFormat and Prototype"},
+       {"Folder", Type::Table, "Folder and Format: a file for each step"},
+       {"FilePath", Type::String, "of older assets: an <OpenSpaceTemporalGDALDataset>, or a file that holds one"},
+       {"UseFixedTime", Type::Boolean, "whether FixedTime is shown whatever the time"},
+       {"FixedTime", Type::String, "the date to show then"},
+       {"Interpolation", Type::Boolean, "whether steps are blended into each other; without effect here"},
+       {"Colormap", Type::String, "an image whose first row colours blended steps; without effect here"}});
+  return fields;
+}
+
+Result<std::shared_ptr<TileProvider>> TemporalTileProvider::make(const ProviderRequest& request) {
+  Result<std::unique_ptr<TimeSeries>> series = seriesOf(request);
+  if (!series) {
+    return tl::make_unexpected(std::move(series.error()));
+  }
+  // What its rasters will be made from must be right now, not when time comes to them.
+  if (Result<ProviderPointer> raster = makeInner(rasterRequest(request, "step.tif")); !raster) {
+    return raster;
+  }
+  auto provider = std::make_shared<TemporalTileProvider>(request, std::move(*series));
+  if (const std::string* text = valueAt(request.table, "FixedTime").string()) {
+    provider->fixedTime.put(*text);
+  }
+  provider->useFixedTime.put(valueAt(request.table, "UseFixedTime").boolean().value_or(false));
+  if (Result<void> read = provider->readFixedTime(); !read) {
+    read.error().where = placeOf(request, "FixedTime");
+    return tl::make_unexpected(std::move(read.error()));
+  }
+  provider->fixedTime.onChange([self = provider.get()] {
+    if (const Result<void> read = self->readFixedTime(); !read) {
+      log::warning("{}: {}; the scene's time is shown", self->fixedTime.uri(), read.error().message());
+    }
+  });
+  return provider;
+}
+
+TemporalTileProvider::TemporalTileProvider(ProviderRequest request, std::unique_ptr<TimeSeries> series)
+    : request_(std::move(request)), isFile_(series == nullptr), rasters_(request_), series_(std::move(series)) {
+  owner_.addProperty(useFixedTime);
+  owner_.addProperty(fixedTime);
+}
+
+Result<void> TemporalTileProvider::readFixedTime() {
+  fixed_.reset();
+  if (fixedTime.get().empty()) {
+    return {};
+  }
+  return readDate(fixedTime.get()).map([this](Time::UtcInstant instant) { fixed_ = instant; });
+}
+
+Result<void> TemporalTileProvider::check() const {
+  return isFile_ ? checkData(dataPath(*valueAt(request_.table, "FilePath").string(), request_.folder),
+                             placeOf(request_, "FilePath"))
+                 : series_->check();
+}
+
+Result<void> TemporalTileProvider::openData() {
+  if (Result<void> checked = check(); !checked) {
+    return checked;
+  }
+  if (isFile_) {
+    const DataPath path = dataPath(*valueAt(request_.table, "FilePath").string(), request_.folder);
+    // Relative paths in the file start at the file.
+    rasters_.folder = std::filesystem::path(path.text).parent_path().string();
+    Result<std::unique_ptr<TimeSeries>> series =
+        readDocument(path.text, placeOf(request_, "FilePath")).and_then([&](const std::string& text) {
+          return seriesOf(text, rasters_);
+        });
+    if (!series) {
+      return tl::make_unexpected(std::move(series.error()));
+    }
+    series_ = std::move(*series);
+  }
+  return series_->open();
+}
+
+TimeSeries::Entry TemporalTileProvider::entryAt(const Time& now) const {
+  return useFixedTime.get() && fixed_ ? series_->atFixed(*fixed_) : series_->at(now.utcInstant());
+}
+
+TileStep TemporalTileProvider::at(const Time& now) const {
+  const TimeSeries::Entry entry = entryAt(now);
+  TileStep step;
+  step.id = static_cast<std::uint64_t>(entry.instant.time_since_epoch().count());
+  step.begin = entry.begin ? Time::fromUtcInstant(*entry.begin) : step.begin;
+  step.end = entry.end ? Time::fromUtcInstant(*entry.end) : step.end;
+  return step;
+}
+
+Result<std::shared_ptr<TileProvider>> TemporalTileProvider::make(const Time& now) const {
+  return series_->filePath(entryAt(now).instant).and_then([this](std::string path) {
+    return makeInner(rasterRequest(rasters_, std::move(path)));
+  });
+}
+
+}  // namespace meridian::globebrowsing

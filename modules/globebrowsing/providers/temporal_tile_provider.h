@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "globebrowsing/providers/provider_registry.h"
+#include "globebrowsing/providers/tile_steps.h"
+#include "globebrowsing/providers/time_series.h"
+#include "host/api/property.h"
+#include "host/api/property_owner.h"
+
+namespace meridian::globebrowsing {
+
+/// Another raster for each time: TemporalTileProvider. Its rasters are named by a prototype, by the files of a folder,
+/// or by the XML of older assets; all have the keys of the layer's table.
+class TemporalTileProvider final : public SteppedTileProvider {
+ public:
+  [[nodiscard]] static const Schema& schema();
+  [[nodiscard]] static Result<std::shared_ptr<TileProvider>> make(const ProviderRequest& request);
+
+  /// Without a series it is in the XML file that the table's FilePath names, and read when opened.
+  TemporalTileProvider(ProviderRequest request, std::unique_ptr<TimeSeries> series);
+
+  [[nodiscard]] Result<void> check() const override;
+  [[nodiscard]] PropertyOwner* properties() override { return &owner_; }
+  [[nodiscard]] TileStep at(const Time& now) const override;
+  [[nodiscard]] Result<std::shared_ptr<TileProvider>> make(const Time& now) const override;
+
+  BoolProperty useFixedTime{{"UseFixedTime", "Use fixed time", "Whether FixedTime is shown whatever the time"}, false};
+  StringProperty fixedTime{{"FixedTime", "Fixed time", "The date to show; empty: the scene's time"}};
+
+ private:
+  [[nodiscard]] Result<void> openData() override;
+  [[nodiscard]] TimeSeries::Entry entryAt(const Time& now) const;
+  Result<void> readFixedTime();
+
+  const ProviderRequest request_;
+  const bool isFile_;                      ///< the series is in a file
+  ProviderRequest rasters_;                ///< what each of them is made from; final once open
+  std::unique_ptr<TimeSeries> series_;     ///< likewise
+  std::optional<Time::UtcInstant> fixed_;  ///< FixedTime, where it is a date
+  PropertyOwner owner_{"TileProvider", "Tile provider", "Which time is shown"};
+};
+
+}  // namespace meridian::globebrowsing
