@@ -38,6 +38,20 @@ class Host {
   [[nodiscard]] virtual Renderable* renderable(std::string_view node) = 0;
   /// Identifiers of all nodes, in the order of adding.
   [[nodiscard]] virtual std::vector<std::string> nodes() const = 0;
+
+  // For script functions, while one runs.
+  /// Where the script stands that calls: "FILE:LINE" for messages, and the folder that relative paths begin at.
+  struct ScriptPlace {
+    std::string where;
+    std::string folder;
+  };
+  [[nodiscard]] virtual ScriptPlace scriptPlace() const = 0;
+  /// The whole path, tokens replaced. Errors: unknown tokens; where scripts may not read.
+  [[nodiscard]] virtual Result<std::filesystem::path> readablePath(std::string_view path) const = 0;
+  /// What a Lua file of data returns, or else the globals that it sets; run in a sandbox of its own.
+  [[nodiscard]] virtual Result<Value> readLuaData(const std::filesystem::path& file) const = 0;
+  /// As openspace.addSceneGraphNode.
+  virtual Result<void> addSceneGraphNode(const Value& table) = 0;
 };
 
 /// A part of the program that can be left out at build time. Named in CMake; the host finds it in a generated list.

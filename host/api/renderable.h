@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,12 +42,15 @@ class Renderable : public PropertyOwner {
   /// Null unless it is something to stand on.
   [[nodiscard]] virtual Ground* ground() { return nullptr; }
 
-  /// What `--validate` counts. Known as soon as it is made.
+  /// What `--validate` counts and lists.
   struct Contents {
+    struct Layer {
+      std::string name;               ///< "ColorLayers.BlueMarble"; of one whose table was refused: its group
+      std::optional<Error> unusable;  ///< why its provider cannot be built, or its local data do not exist
+    };
     std::size_t globes = 0;
-    std::size_t layers = 0;
-    std::size_t usableLayers = 0;  ///< their provider can be built and their local data exist
-    std::vector<Error> unusable;   ///< why the data of the others do not
+    std::vector<Layer> layers;  ///< those that were refused, too
+    std::vector<Error> notes;   ///< what is no error, but may be a mistake: keys that nothing knows
   };
   [[nodiscard]] virtual Contents contents() const { return {}; }
 

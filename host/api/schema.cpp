@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -63,6 +64,24 @@ std::vector<double> numbersIn(const Value& value) {
   return value.numbers().value_or(std::vector<double>{});
 }
 
+/// How many letters must be changed, added or left out to turn one word into the other, whatever their case.
+std::size_t distanceBetween(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const bool same =
+          std::tolower(static_cast<unsigned char>(a[i])) == std::tolower(static_cast<unsigned char>(b[j]));
+      const std::size_t changed = diagonal + (same ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
 Result<void> checkField(const Schema::Field& field, const Value& value, const std::string& where) {
   if (!hasType(value, field.type)) {
     return failure(fmt::format("expected {}, found {} {}", typeName(field.type), kindName(value.kind()),
@@ -89,6 +108,34 @@ Result<void> checkField(const Schema::Field& field, const Value& value, const st
 }
 
 }  // namespace
+
+std::vector<UnknownKey> unknownKeys(const Value& table, std::initializer_list<const Schema*> schemas,
+                                    std::span<const std::string_view> ignored) {
+  constexpr std::size_t longestKey = 64;
+  std::vector<UnknownKey> found;
+  if (!table.isTable()) {
+    return found;
+  }
+  for (const auto& [key, value] : table.table()->fields) {
+    std::string meant;
+    std::size_t best = std::min<std::size_t>(key.size() / 3, 2) + 1;
+    bool known = std::find(ignored.begin(), ignored.end(), key) != ignored.end();
+    for (const Schema* schema : schemas) {
+      for (const Schema::Field& field : schema->fields()) {
+        known = known || field.key == key;
+        const std::size_t distance = key.size() > longestKey ? best : distanceBetween(key, field.key);
+        if (distance < best) {
+          best = distance;
+          meant = field.key;
+        }
+      }
+    }
+    if (!known) {
+      found.push_back({key, std::move(meant)});
+    }
+  }
+  return found;
+}
 
 std::string_view typeName(Schema::Type type) {
   switch (type) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,6 +54,15 @@ class Schema {
  private:
   std::vector<Field> fields_;
 };
+
+/// A key of a table that no schema names.
+struct UnknownKey {
+  std::string key;
+  std::string meant;  ///< the known key that it resembles; empty without one
+};
+/// Those of `table`, in alphabetical order, but for `ignored`.
+[[nodiscard]] std::vector<UnknownKey> unknownKeys(const Value& table, std::initializer_list<const Schema*> schemas,
+                                                  std::span<const std::string_view> ignored);
 
 /// "a number", "a list of 3 numbers" ...: how messages call a type.
 [[nodiscard]] std::string_view typeName(Schema::Type type);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -74,6 +75,21 @@ class Reader {
     rest_.remove_prefix(count);
     return count >= least;
   }
+  /// The first letters of an English month, and the rest of the word.
+  bool month(int& number) {
+    static constexpr std::string_view months = "JANFEBMARAPRMAYJUNJULAUGSEPOCTNOVDEC";
+    std::string word;
+    while (word.size() < rest_.size() && std::isalpha(static_cast<unsigned char>(rest_[word.size()])) != 0) {
+      word += static_cast<char>(std::toupper(static_cast<unsigned char>(rest_[word.size()])));
+    }
+    const std::size_t found = word.size() < 3 ? std::string_view::npos : months.find(word.substr(0, 3));
+    if (found == std::string_view::npos || found % 3 != 0) {
+      return false;
+    }
+    rest_.remove_prefix(word.size());
+    number = static_cast<int>(found / 3) + 1;
+    return true;
+  }
   /// What follows a decimal point; 0 without one.
   double fraction() {
     double value = 0.0;
@@ -96,12 +112,12 @@ class Reader {
 };
 
 bool readTimeOfDay(Reader& reader, CalendarTime& time) {
-  if (!reader.digits(1, 2, time.hour) || !reader.take(':') || !reader.digits(2, 2, time.minute)) {
+  if (!reader.digits(1, 2, time.hour) || !reader.take(':') || !reader.digits(1, 2, time.minute)) {
     return false;
   }
   int seconds = 0;
   if (reader.take(':')) {
-    if (!reader.digits(2, 2, seconds)) {
+    if (!reader.digits(1, 2, seconds)) {
       return false;
     }
     time.second = seconds + reader.fraction();
@@ -109,13 +125,27 @@ bool readTimeOfDay(Reader& reader, CalendarTime& time) {
   return true;
 }
 
+bool readSeparator(Reader& reader) {
+  if (reader.take('-') || reader.take('/')) {
+    return true;
+  }
+  const bool blank = reader.take(' ');
+  reader.blanks();
+  return blank;
+}
+
+/// "07-14" or "JUL 14".
+bool readMonthAndDay(Reader& reader, CalendarTime& time) {
+  return (reader.month(time.month) || reader.digits(1, 2, time.month)) && readSeparator(reader) &&
+         reader.digits(1, 2, time.day);
+}
+
 std::optional<CalendarTime> readCalendar(std::string_view text) {
   Reader reader(text);
   CalendarTime time;
   reader.blanks();
   const bool negative = reader.take('-');
-  if (!reader.digits(4, 5, time.year) || !reader.take('-') || !reader.digits(1, 2, time.month) || !reader.take('-') ||
-      !reader.digits(1, 2, time.day)) {
+  if (!reader.digits(4, 5, time.year) || !readSeparator(reader) || !readMonthAndDay(reader, time)) {
     return std::nullopt;
   }
   time.year = negative ? -time.year : time.year;
@@ -129,6 +159,7 @@ std::optional<CalendarTime> readCalendar(std::string_view text) {
       return std::nullopt;
     }
   }
+  reader.blanks();
   reader.take('Z');
   reader.blanks();
   return reader.atEnd() ? std::optional(time) : std::nullopt;

@@ -1,10 +1,17 @@
 #include "host/app/application.h"
 
+#include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include "host/api/log.h"
 #include "host/assets/file_scripts.h"
+#include "host/navigation/flight_scripts.h"
+#include "host/navigation/placing_scripts.h"
 #include "host/navigation/script_library.h"
+#include "host/scene/scene_scripts.h"
+#include "host/scripting/foreign_scripts.h"
+#include "host/scripting/lua_data.h"
 #include "host/scripting/property_scripts.h"
 #include "host/scripting/time_scripts.h"
 
@@ -26,7 +33,13 @@ Application::Application(Paths paths)
   root_.addChild(navigator_);
   root_.addChild(renderSettings_);
   root_.addChild(moduleOwner_);
+  root_.addChild(foreignSettings_.dashboard);
+  moduleOwner_.addChild(foreignSettings_.webGui);
+  moduleOwner_.addChild(foreignSettings_.exoplanets);
   registerLibraries();
+  scene_.setEye([this](const scene::SceneNode& node) {
+    return camera_.poseIn(node).position / scene_.worldFromNode(node).scale;
+  });
   scene_.evaluate(clock_.time());
 }
 
@@ -35,12 +48,51 @@ Application::~Application() {
 }
 
 void Application::registerLibraries() {
+  // First, so that what is ours takes the place of what is not.
+  for (const ScriptLibrary& library : scripting::foreignLibraries()) {
+    scripts_.registerLibrary(library);
+  }
+  scripts_.registerLibrary(scripting::actionLibrary(actions_));
+  scripts_.registerLibrary(scripting::keyLibrary(keys_));
+  scripts_.registerLibrary(scene::sceneLibrary(scene_));
+  scripts_.registerLibrary(moduleLibrary());
   scripts_.registerLibrary(scripting::propertyLibrary(root_, properties_, animation_));
   scripts_.registerLibrary(scripting::logLibrary());
   scripts_.registerLibrary(scripting::timeLibrary(clock_, [this] { return seconds_; }));
-  scripts_.registerLibrary(assets::fileLibrary(tokens_, [this] { return assetLoader_.currentFolder(); }));
+  const auto folder = [this] { return assetLoader_.currentFolder(); };
+  const auto missing = [this](const std::filesystem::path& path) { assetLoader_.noteMissing(path); };
+  scripts_.registerLibrary(assets::fileLibrary(tokens_, folder, missing));
+  scripts_.registerLibrary(assets::orbitLibrary(tokens_, folder, missing));
   scripts_.registerLibrary(navigation::navigationLibrary(camera_, navigator_));
+  scripts_.registerLibrary(navigation::flightLibrary(camera_, navigator_, flight_));
+  scripts_.registerLibrary(navigation::pathLibrary(camera_, navigator_, flight_));
   scripts_.registerLibrary({"globebrowsing", navigation::geoFunctions(camera_, navigator_)});
+  scripts_.registerLibrary({"globebrowsing", navigation::placingFunctions(scene_, camera_, navigator_)});
+  // Up to version 0.20 flights over globes were there as well.
+  ScriptLibrary flights = navigation::flightLibrary(camera_, navigator_, flight_);
+  flights.name = "globebrowsing";
+  std::erase_if(flights.functions, [](const ScriptFunction& each) { return !each.name.starts_with("flyToGeo"); });
+  scripts_.registerLibrary(flights);
+}
+
+/// What assets ask before they use a module.
+ScriptLibrary Application::moduleLibrary() const {
+  return {"modules",
+          {{"isLoaded", "name", "Whether the program has the module.", 1, 1,
+            [this](std::span<const Value> a) -> ScriptResult {
+              if (a[0].string() == nullptr) {
+                return failure("argument 1 must be the name of a module");
+              }
+              return std::vector<Value>{hasModule(*a[0].string())};
+            }}}};
+}
+
+bool Application::hasModule(std::string_view name) const {
+  return std::any_of(modules_.begin(), modules_.end(), [name](const auto& module) {
+    const std::string& own = module->identifier();
+    return std::equal(own.begin(), own.end(), name.begin(), name.end(),
+                      [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); });
+  });
 }
 
 void Application::addModules(std::vector<std::unique_ptr<Module>> modules) {
@@ -96,19 +148,29 @@ std::vector<std::string> Application::nodes() const {
   return identifiers;
 }
 
+Host::ScriptPlace Application::scriptPlace() const {
+  return {scripts_.place(), assetLoader_.currentFolder()};
+}
+
+Result<std::filesystem::path> Application::readablePath(std::string_view path) const {
+  return tokens_.expand(path)
+      .map([this](const std::filesystem::path& expanded) {
+        return expanded.is_absolute() ? expanded : (assetLoader_.currentFolder() / expanded).lexically_normal();
+      })
+      .and_then([this](const std::filesystem::path& whole) { return tokens_.readable(whole); });
+}
+
+Result<Value> Application::readLuaData(const std::filesystem::path& file) const {
+  return scripting::readLuaData(file);
+}
+
+Result<void> Application::addSceneGraphNode(const Value& table) {
+  const ScriptPlace place = scriptPlace();
+  return addNode(table, place.where, place.folder);
+}
+
 Result<void> Application::addNode(const Value& table, const std::string& where, const std::string& folder) {
-  const auto node = scene_.addNode(table, where, folder);
-  if (!node) {
-    return tl::make_unexpected(node.error());
-  }
-  if (const Renderable* renderable = (*node)->renderable()) {
-    const Renderable::Contents contents = renderable->contents();
-    counts_.globes += contents.globes;
-    counts_.layers += contents.layers;
-    counts_.usableLayers += contents.usableLayers;
-    counts_.unusable.insert(counts_.unusable.end(), contents.unusable.begin(), contents.unusable.end());
-  }
-  return {};
+  return scene_.addNode(table, where, folder).map([](const scene::SceneNode*) {});
 }
 
 Result<void> Application::removeNode(const std::string& identifier) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -12,11 +12,14 @@
 #include "host/api/property.h"
 #include "host/api/property_owner.h"
 #include "host/api/statistics.h"
+#include "host/app/foreign_settings.h"
 #include "host/assets/asset_loader.h"
 #include "host/assets/path_tokens.h"
 #include "host/navigation/camera.h"
+#include "host/navigation/flight.h"
 #include "host/navigation/orbit_navigator.h"
 #include "host/scene/scene.h"
+#include "host/scripting/actions.h"
 #include "host/scripting/clock.h"
 #include "host/scripting/property_animation.h"
 #include "host/scripting/property_index.h"
@@ -31,14 +34,6 @@ class RenderSettings final : public PropertyOwner {
   IntProperty antialiasing{
       {"Antialiasing", "Antialiasing", "Samples a pixel: 1 is none; others become what the driver has"}, 1, 1, 4};
   BoolProperty verticalSync{{"VerticalSync", "Vertical sync", "Whether frames wait for the screen"}, true};
-};
-
-/// What assets brought in, as `--validate` counts it.
-struct SceneCounts {
-  std::size_t globes = 0;
-  std::size_t layers = 0;
-  std::size_t usableLayers = 0;
-  std::vector<Error> unusable;  ///< of layers whose local data are missing
 };
 
 /// Everything of a running program but windows and drawing: the scene with its camera, time, scripts, assets and
@@ -57,7 +52,7 @@ class Application final : public Host, private assets::AssetTarget {
   void addModules(std::vector<std::unique_ptr<Module>> modules);
   /// Loads a root asset; see AssetLoader::add.
   Result<void> load(const std::string& asset);
-  /// Takes all assets and nodes away again: before what draws them goes. Nothing can be loaded afterwards.
+  /// Takes all assets and nodes away again; in time before what draws them goes.
   void unload();
 
   void registerRenderable(std::string type, RenderableFactory factory) override;
@@ -67,6 +62,10 @@ class Application final : public Host, private assets::AssetTarget {
   [[nodiscard]] Statistics& statistics() override { return statistics_; }
   [[nodiscard]] Renderable* renderable(std::string_view node) override;
   [[nodiscard]] std::vector<std::string> nodes() const override;
+  [[nodiscard]] ScriptPlace scriptPlace() const override;
+  [[nodiscard]] Result<std::filesystem::path> readablePath(std::string_view path) const override;
+  [[nodiscard]] Result<Value> readLuaData(const std::filesystem::path& file) const override;
+  Result<void> addSceneGraphNode(const Value& table) override;
 
   /// The panels registered so far; they are then the caller's.
   [[nodiscard]] std::vector<std::unique_ptr<Panel>> takePanels() { return std::move(panels_); }
@@ -74,15 +73,17 @@ class Application final : public Host, private assets::AssetTarget {
   [[nodiscard]] scene::Scene& scene() { return scene_; }
   [[nodiscard]] navigation::Camera& camera() { return camera_; }
   [[nodiscard]] navigation::OrbitNavigator& navigator() { return navigator_; }
+  [[nodiscard]] navigation::Flight& flight() { return flight_; }
   [[nodiscard]] scripting::Clock& clock() { return clock_; }
   [[nodiscard]] scripting::ScriptEngine& scripts() { return scripts_; }
   [[nodiscard]] scripting::PropertyIndex& properties() { return properties_; }
   [[nodiscard]] scripting::PropertyAnimation& animation() { return animation_; }
+  [[nodiscard]] scripting::Actions& actions() { return actions_; }
+  [[nodiscard]] scripting::KeyBindings& keys() { return keys_; }
+  /// Upper and lower case are the same.
+  [[nodiscard]] bool hasModule(std::string_view name) const;
   [[nodiscard]] assets::AssetLoader& assetLoader() { return assetLoader_; }
   [[nodiscard]] RenderSettings& renderSettings() { return renderSettings_; }
-  /// Of all nodes that were ever added.
-  [[nodiscard]] const SceneCounts& counts() const { return counts_; }
-
   /// Frame seconds since the program began: what scripts call application time.
   void addSeconds(double seconds) { seconds_ += seconds; }
   [[nodiscard]] double seconds() const { return seconds_; }
@@ -92,25 +93,29 @@ class Application final : public Host, private assets::AssetTarget {
   Result<void> removeNode(const std::string& identifier) override;
   [[nodiscard]] bool hasNode(const std::string& identifier) const override;
   void registerLibraries();
+  [[nodiscard]] ScriptLibrary moduleLibrary() const;
 
   // In the order of use: what comes later refers to what comes before and goes first.
   Paths paths_;
   Statistics statistics_;
   PropertyOwner root_{""};
   PropertyOwner moduleOwner_{"Modules"};
+  ForeignSettings foreignSettings_;
   std::vector<std::unique_ptr<Module>> modules_;
   std::vector<std::unique_ptr<Panel>> panels_;
   scripting::Clock clock_;
   scene::Scene scene_;
   navigation::Camera camera_{scene_};
   navigation::OrbitNavigator navigator_{camera_};
+  navigation::Flight flight_{camera_, navigator_};
   RenderSettings renderSettings_;
   scripting::ScriptEngine scripts_;
+  scripting::Actions actions_{scripts_};
+  scripting::KeyBindings keys_{actions_};
   scripting::PropertyIndex properties_{root_};
   scripting::PropertyAnimation animation_;
   assets::PathTokens tokens_;
   assets::AssetLoader assetLoader_;
-  SceneCounts counts_;
   double seconds_ = 0.0;
 };
 

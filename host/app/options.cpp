@@ -13,6 +13,7 @@ namespace meridian::app {
 namespace {
 
 constexpr int maximumSide = 16384;
+constexpr std::int64_t maximumPixels = std::int64_t{8192} * 8192;  // more take minutes a frame without a graphics card
 constexpr std::uint64_t maximumFrames = 1'000'000'000;
 constexpr double minimumAltitude = -20'000.0;  // deeper than any trench or crater of a mapped body
 constexpr double maximumAltitude = 1e15;       // well outside the solar system
@@ -39,12 +40,14 @@ constexpr std::string_view footer =
     "  meridian --headless --size 1920x1080 --settle 10 --output earth.png\n"
     "  meridian --headless --play flight.osrectxt --fps 30 --settle 10 --output flight.mp4\n"
     "  meridian --set \"Scene.Earth.Renderable.Layers.ColorLayers.*.Enabled=false\"\n"
+    "  meridian my.profile\n"
     "  meridian --validate my-assets";
 
 void declare(CLI::App& app, Words& words) {
   app.set_help_flag("-h,--help", "Print this and end");
   app.footer(std::string(footer));
-  app.add_option("ASSET", words.assets, "Asset files to load; with --validate also folders")->option_text(" ");
+  app.add_option("ASSET", words.assets, "Asset files and profiles to load; with --validate also folders")
+      ->option_text(" ");
   app.add_flag("--headless", words.headless, "No window: off screen, works without a display");
   app.add_option("--size", words.size, "Size of the picture in pixels (default 1280x720)")->option_text("WxH");
   app.add_option("--time", words.time, "Scene time at start, UTC")->option_text("ISO8601");
@@ -110,6 +113,10 @@ Result<glm::ivec2> parseSize(std::string_view text) {
   if (parts.size() == 2) {
     const auto width = wholeNumber(parts[0], maximumSide);
     const auto height = wholeNumber(parts[1], maximumSide);
+    if (width && height && static_cast<std::int64_t>(*width * *height) > maximumPixels) {
+      return failure(fmt::format("--size: '{}' has {} million pixels, and a frame {} million at most", text,
+                                 *width * *height / 1'000'000, maximumPixels / 1'000'000));
+    }
     if (width && height) {
       return glm::ivec2(static_cast<int>(*width), static_cast<int>(*height));
     }

@@ -29,7 +29,7 @@ struct PropertySetting {
 struct Options {
   std::vector<std::string> assets;  ///< empty: the default scene
   bool headless = false;
-  glm::ivec2 size{1280, 720};  ///< pixels, each side 1..16384
+  glm::ivec2 size{1280, 720};  ///< pixels, each side 1..16384, together at most 8192 * 8192
   std::optional<Time> time;
   std::optional<navigation::GeodeticPose> camera;
   std::string anchor;  ///< identifier; empty: the host chooses

@@ -14,6 +14,8 @@
 #include "host/app/frame_writer.h"
 #include "host/app/interruption.h"
 #include "host/app/locations.h"
+#include "host/app/picture_memory.h"
+#include "host/app/profile_start.h"
 #include "host/app/run_loop.h"
 #include "host/app/scene_renderer.h"
 #include "host/app/session.h"
@@ -210,6 +212,7 @@ class Show {
     commands.togglePanels = [this] { panels_->setVisible(!panels_->isVisible()); };
     commands.togglePause = [this] { application_.clock().setPause(!application_.clock().isPaused()); };
     commands.quit = [this] { loop_->quit(); };
+    commands.pressKey = [this](const std::string& key) { return application_.keys().press(key); };
     commands.panelHasMouse = [this] { return panels_->hasMouse(); };
     commands.panelHasKeyboard = [this] { return panels_->hasKeyboard(); };
     input_ = std::make_unique<WindowInput>(surface_.window->window(), application_.navigator(), std::move(commands));
@@ -245,14 +248,22 @@ class Show {
 
 ExitCode validate(Application& application, const Options& options) {
   const AssetCheck check = checkAssets(application, options.assets);
+  check.report();
   fmt::print("{}\n", check.line());
   return check.failed == 0 ? ExitCode::Done : ExitCode::AssetErrors;
 }
 
 ExitCode show(Application& application, const Options& options, const std::vector<ParsedSetting>& settings) {
-  const std::size_t failedAssets = loadAssets(application, options.assets);
-  if (failedAssets == options.assets.size()) {
+  if (failed(checkPictureFits(options.size, availableMemory()))) {
     return ExitCode::Failed;
+  }
+  const LoadedAssets assets = loadAssets(application, options.assets);
+  if (assets.loaded == 0) {
+    return ExitCode::Failed;
+  }
+  std::size_t failures = assets.failed;
+  for (const auto& [file, profile] : assets.profiles) {
+    failures += startProfile(application, profile, file);
   }
   if (failed(prepareScene(application, options, settings))) {
     return ExitCode::Failed;
@@ -264,7 +275,7 @@ ExitCode show(Application& application, const Options& options, const std::vecto
   if (options.output) {
     log::info("written: {}", options.output->string());
   }
-  return failedAssets == 0 ? ExitCode::Done : ExitCode::Failed;
+  return failures == 0 ? ExitCode::Done : ExitCode::Failed;
 }
 
 }  // namespace

@@ -76,6 +76,7 @@ Result<void> Session::advance() {
   if (isPlaying()) {
     player_->advance(seconds);
   } else {
+    application_.flight().advance(seconds);
     application_.navigator().update(seconds);
   }
   return recorder_ ? recorder_->addFrame(seconds, application_.clock().time(), application_.camera()) : Result<void>{};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include <glm/vec2.hpp>
 
@@ -11,14 +12,17 @@ struct GLFWwindow;
 namespace meridian::app {
 
 /// Turns a window's mouse and keys into motions of the camera and into commands: left drag orbits, right drag and wheel
-/// zoom, middle drag tilts (with Shift: rolls); F1, Space and Escape call the commands. Takes the window's user pointer
-/// and its callbacks; whoever sets others afterwards must call these too. Render thread only.
+/// zoom, middle drag tilts (with Shift: rolls); keys call what is bound to them, else F1, Space and Escape the
+/// commands. Takes the window's user pointer and its callbacks; whoever sets others afterwards must call these too.
+/// Render thread only.
 class WindowInput {
  public:
   struct Commands {
     std::function<void()> togglePanels;
     std::function<void()> togglePause;
     std::function<void()> quit;
+    /// Calls what a profile or a script bound to a key, as "Ctrl+Shift+H"; whether there was anything.
+    std::function<bool(const std::string& key)> pressKey;
     /// Whether a panel takes what the mouse (the keyboard) does now.
     std::function<bool()> panelHasMouse;
     std::function<bool()> panelHasKeyboard;
@@ -43,5 +47,8 @@ class WindowInput {
   bool shift_ = false;
   glm::dvec2 lastPosition_{0.0};
 };
+
+/// A key of GLFW's with its modifiers as bindings write it: "Ctrl+Shift+H", "F5", "KP_0"; empty for keys without name.
+[[nodiscard]] std::string keyName(int key, int modifiers);
 
 }  // namespace meridian::app

@@ -10,6 +10,7 @@
 
 #include "host/api/log.h"
 #include "host/assets/asset_table.h"
+#include "host/assets/json_asset.h"
 
 namespace meridian::assets {
 
@@ -19,15 +20,27 @@ namespace {
 
 constexpr std::uintmax_t largestAsset = std::uintmax_t{16} << 20;
 
+/// With the extension of an asset unless it has it: ".asset", or ".jasset" if only that is there.
 fs::path withExtension(const fs::path& path) {
-  std::error_code ignored;
-  fs::path extended = path;
-  extended += ".asset";
-  if (path.extension() == ".asset" || (path.has_extension() && !fs::is_regular_file(extended, ignored))) {
+  if (isAssetFile(path)) {
     return path;
   }
-  return extended;
+  std::error_code ignored;
+  fs::path lua = path;
+  lua += ".asset";
+  fs::path json = path;
+  json += ".jasset";
+  if (fs::is_regular_file(lua, ignored)) {
+    return lua;
+  }
+  if (fs::is_regular_file(json, ignored)) {
+    return json;
+  }
+  return path.has_extension() ? path : lua;
 }
+
+/// How the error of an asset begins whose fault another one is.
+constexpr std::string_view requirementFailed = "the required asset ";
 
 Result<std::string> readAsset(const fs::path& file) {
   std::error_code error;
@@ -62,6 +75,10 @@ class Running {
 };
 
 }  // namespace
+
+bool isAssetFile(const fs::path& path) {
+  return path.extension() == ".asset" || path.extension() == ".jasset";
+}
 
 Result<fs::path> AssetGraph::resolve(std::string_view path, const Asset* from) const {
   if (path.empty() || path.find('\0') != std::string_view::npos) {
@@ -115,7 +132,12 @@ Result<void> AssetGraph::runFile(Asset& asset, bool enabled) {
   lua_State* lua = engine_->state();
   makeAssetTable(lua, *this, asset, enabled);
   const Running running(running_, asset);
-  if (Result<void> loaded = engine_->load(*text, asset.file.string()); !loaded) {
+  const Result<std::string> script =
+      asset.file.extension() == ".jasset" ? luaFromJsonAsset(*text, asset.file.string()) : text;
+  if (!script) {
+    return tl::make_unexpected(script.error());
+  }
+  if (Result<void> loaded = engine_->load(*script, asset.file.string()); !loaded) {
     return loaded;
   }
   setGlobals(lua, asset);
@@ -137,8 +159,11 @@ Result<Asset*> AssetGraph::require(Asset& parent, std::string_view path, bool en
   }
   Asset& asset = load(*file, enabled);
   const bool late = parent.state != Asset::State::Loading;
-  if (asset.state == Asset::State::Failed || (late && !initialize(asset))) {
-    return failure(fmt::format("the required asset \"{}\" failed: {}", path, asset.errors.front().message()));
+  if (late) {
+    initialize(asset);
+  }
+  if (!accept(parent, asset)) {
+    return failure(fmt::format("{}\"{}\" failed: {}", requirementFailed, path, asset.cause));
   }
   if (std::find(parent.required.begin(), parent.required.end(), &asset) == parent.required.end()) {
     parent.required.push_back(&asset);
@@ -154,9 +179,9 @@ bool AssetGraph::initialize(Asset& asset) {
   // By index: onInitialize may require more.
   for (std::size_t i = 0; i < asset.required.size(); ++i) {
     Asset& each = *asset.required[i];
-    if (!initialize(each)) {
-      fail(asset, {fmt::format("the required asset failed: {}",
-                               each.errors.empty() ? each.file.string() : each.errors.front().message()),
+    initialize(each);
+    if (!accept(asset, each)) {
+      fail(asset, {fmt::format("{}\"{}\" failed: {}", requirementFailed, each.file.string(), each.cause),
                    asset.file.string()});
       return false;
     }
@@ -178,8 +203,28 @@ Result<void> AssetGraph::callFunction(Asset& asset, int reference) {
   return engine_->call(0, 0);
 }
 
+bool AssetGraph::accept(Asset& asset, const Asset& required) {
+  if (required.state != Asset::State::Failed) {
+    return true;
+  }
+  if (required.isUnavailable()) {
+    asset.missing = asset.missing.empty() ? required.missing : asset.missing;
+    return true;
+  }
+  asset.causeOfOthers = required.cause;
+  return false;
+}
+
+void AssetGraph::noteMissing(const fs::path& path) {
+  if (!running_.empty() && running_.back()->missing.empty()) {
+    running_.back()->missing = path;
+  }
+}
+
 void AssetGraph::fail(Asset& asset, Error error) {
   asset.state = Asset::State::Failed;
+  // The first cause goes on to those that require this one, rather than a chain that grows with each of them.
+  asset.cause = error.what.starts_with(requirementFailed) ? asset.causeOfOthers : error.message();
   asset.errors.push_back(std::move(error));
 }
 

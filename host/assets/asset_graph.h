@@ -13,7 +13,10 @@
 
 namespace meridian::assets {
 
-/// One `.asset` file that was reached. References are to values in Lua's registry.
+/// Whether it is called "NAME.asset" (Lua) or "NAME.jasset" (JSON).
+[[nodiscard]] bool isAssetFile(const std::filesystem::path& path);
+
+/// One asset's file that was reached. References are to values in Lua's registry.
 struct Asset {
   enum class State { Loading, Loaded, Initializing, Initialized, Failed };
 
@@ -21,11 +24,17 @@ struct Asset {
   State state = State::Loading;
   bool isRoot = false;
   std::vector<Error> errors;
+  std::string cause;              ///< of the failure, its own or that of the asset that took it along
+  std::string causeOfOthers;      ///< of the last one required that failed
+  std::filesystem::path missing;  ///< the first data that it, or what it requires, would have read; empty: none
   std::vector<Asset*> required;
   int table = 0;    ///< `asset`
   int exports = 0;  ///< what asset.require gives
   std::vector<int> onInitialize;
   std::vector<int> onDeinitialize;
+
+  /// It failed for want of data that were not synchronised. Those that require it go on without.
+  [[nodiscard]] bool isUnavailable() const { return state == State::Failed && !missing.empty(); }
 };
 
 /// The assets, who requires whom, and the order in which they come and go.
@@ -51,6 +60,9 @@ class AssetGraph {
   /// What asset.require does: loads, and joins the two. Errors: a circle, a failure.
   Result<Asset*> require(Asset& parent, std::string_view path, bool enabled);
 
+  /// Data that the running asset would have read were not synchronised.
+  void noteMissing(const std::filesystem::path& path);
+
   /// Deinitialises and forgets all that no root needs any more, those who require before the required.
   void sweep();
 
@@ -59,6 +71,8 @@ class AssetGraph {
 
  private:
   void fail(Asset& asset, Error error);
+  /// Whether the one can go on: the other is well, or only its data are not there.
+  bool accept(Asset& asset, const Asset& required);
   Result<void> runFile(Asset& asset, bool enabled);
   Result<void> callFunction(Asset& asset, int reference);
   void forget(Asset& asset);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "host/api/log.h"
 #include "host/assets/asset_graph.h"
 
 namespace meridian::assets {
@@ -44,7 +45,7 @@ struct AssetLoader::Private {
   /// The file of the machine if there is one, else as in asset.require.
   [[nodiscard]] Result<fs::path> rootFile(std::string_view path) const {
     std::error_code error;
-    for (const char* extension : {"", ".asset"}) {
+    for (const char* extension : {"", ".asset", ".jasset"}) {
       fs::path file = fs::path(path);
       file += extension;
       if (fs::is_regular_file(file, error)) {
@@ -83,11 +84,15 @@ AssetLoader::AssetLoader(scripting::ScriptEngine& engine, PathTokens& tokens, As
                [&](const std::string& identifier) { return std::vector<Value>{self->target->hasNode(identifier)}; });
          }}}});
 
-  const auto outsideAssets = [self](Arguments a) -> Result<std::string> {
-    if (self->graph.running() != nullptr) {
-      return failure("assets cannot come and go while one runs", {}, "use asset.require");
-    }
-    return textAt(a, 0);
+  // While an asset runs others cannot come and go: that waits for the next frame.
+  const auto outsideAssets = [self](std::string_view name, Arguments a, auto act) -> ScriptResult {
+    return textAt(a, 0).and_then([&](const std::string& path) -> ScriptResult {
+      if (self->graph.running() != nullptr) {
+        self->graph.engine().queue(fmt::format("openspace.asset.{}({})", name, Value(path).toLua()));
+        return nothing();
+      }
+      return act(path).and_then(nothing);
+    });
   };
   const auto list = [self](bool rootsOnly) -> ScriptResult {
     Table files;
@@ -101,12 +106,12 @@ AssetLoader::AssetLoader(scripting::ScriptEngine& engine, PathTokens& tokens, As
   engine.registerLibrary(
       {"asset",
        {{"add", "path", "Loads an asset.", 1, 1,
-         [this, outsideAssets](Arguments a) -> ScriptResult {
-           return outsideAssets(a).and_then([this](const std::string& path) { return add(path); }).and_then(nothing);
+         [this, outsideAssets](Arguments a) {
+           return outsideAssets("add", a, [this](const std::string& path) { return add(path); });
          }},
         {"remove", "path", "Removes an asset.", 1, 1,
-         [this, outsideAssets](Arguments a) -> ScriptResult {
-           return outsideAssets(a).and_then([this](const std::string& path) { return remove(path); }).and_then(nothing);
+         [this, outsideAssets](Arguments a) {
+           return outsideAssets("remove", a, [this](const std::string& path) { return remove(path); });
          }},
         {"isLoaded", "path", "Whether an asset is loaded.", 1, 1,
          [this](Arguments a) -> ScriptResult {
@@ -127,6 +132,10 @@ Result<void> AssetLoader::add(std::string_view path) {
   Asset& asset = private_->graph.load(*file, true);
   asset.isRoot = true;
   private_->graph.initialize(asset);
+  if (asset.isUnavailable()) {
+    log::warning("not available: {}; {}", asset.cause, asset.missing.string());
+    return {};
+  }
   if (!asset.errors.empty()) {
     return tl::make_unexpected(asset.errors.front());
   }
@@ -154,7 +163,8 @@ void AssetLoader::removeAll() {
 std::vector<AssetReport> AssetLoader::reports() const {
   std::vector<AssetReport> reports;
   for (const auto& asset : private_->graph.assets()) {
-    reports.push_back({asset->file, private_->graph.nameOf(*asset), asset->errors.empty(), asset->errors});
+    reports.push_back(
+        {asset->file, private_->graph.nameOf(*asset), asset->errors.empty(), !asset->isUnavailable(), asset->errors});
   }
   return reports;
 }
@@ -163,6 +173,10 @@ bool AssetLoader::isLoaded(std::string_view path) const {
   const Result<fs::path> file = private_->rootFile(path);
   const Asset* asset = file ? private_->graph.find(*file) : nullptr;
   return asset != nullptr && asset->state == Asset::State::Initialized;
+}
+
+void AssetLoader::noteMissing(const fs::path& path) {
+  private_->graph.noteMissing(path);
 }
 
 std::string AssetLoader::currentFolder() const {

@@ -29,11 +29,12 @@ struct AssetReport {
   std::filesystem::path file;
   std::string name;  ///< of asset.meta; empty without
   bool ok = true;
+  bool available = true;  ///< false: it failed for want of data that were not synchronised, which is no error
   std::vector<Error> errors;
 };
 
-/// Loads `.asset` files with what they require, and initialises them, required ones first. An error fails its asset and
-/// those that require it; all others go on. Adds `openspace.addSceneGraphNode`, `removeSceneGraphNode`,
+/// Loads `.asset` and `.jasset` files with what they require, and initialises them, required ones first. An error fails
+/// its asset and those that require it; all others go on. Adds `openspace.addSceneGraphNode`, `removeSceneGraphNode`,
 /// `hasSceneGraphNode` and `openspace.asset.*` (add, remove, isLoaded, allAssets, rootAssets) to the engine.
 ///
 /// Engine, tokens and target must outlive it. Render thread only.
@@ -54,6 +55,10 @@ class AssetLoader {
   /// Every asset that was reached, in the order of loading. Assets that failed are in it until they are removed.
   [[nodiscard]] std::vector<AssetReport> reports() const;
   [[nodiscard]] bool isLoaded(std::string_view path) const;
+
+  /// Data below ${SYNC} that the asset whose code runs now would have read are not there. Should it fail, it is not
+  /// available, and those that require it go on without it.
+  void noteMissing(const std::filesystem::path& path);
 
   /// Folder of the asset whose code runs now; ${ASSETS} outside of one.
   [[nodiscard]] std::string currentFolder() const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -41,11 +42,31 @@ PathTokens::PathTokens(const Paths& paths) {
   set("CACHE", paths.cache);
   set("TEMPORARY", paths.temporary);
   set("DATA", paths.data);
-  set("SCRIPTS", paths.data / "scripts");
-  set("USER", paths.data / "user");
-  set("USER_ASSETS", paths.data / "user" / "assets");
+  set("SYNC_DYNAMIC", paths.sync / "dynamically_downloaded");
+  for (const auto& [token, folder] : {std::pair{"SCRIPTS", "scripts"},
+                                      {"PROFILES", "profiles"},
+                                      {"FONTS", "fonts"},
+                                      {"TASKS", "tasks"},
+                                      {"WEB", "web"},
+                                      {"CONFIG", "config"},
+                                      {"DOCUMENTATION", "documentation"},
+                                      {"MODULES", "modules"},
+                                      {"GLOBEBROWSING", "globebrowsing"},
+                                      {"USER", "user"},
+                                      {"USER_ASSETS", "user/assets"},
+                                      {"USER_CONFIG", "user/config"},
+                                      {"USER_PROFILES", "user/profiles"},
+                                      {"USER_SCRIPTS", "user/scripts"},
+                                      {"USER_SHOWCOMPOSER", "user/showcomposer"},
+                                      {"USER_SHOWCOMPOSER_UPLOADS", "user/showcomposer/uploads"},
+                                      {"USER_SHOWCOMPOSER_PROJECTS", "user/showcomposer/projects"},
+                                      {"USER_WEBPANELS", "user/webpanels"},
+                                      {"SCREENSHOTS", "user/screenshots"},
+                                      {"RECORDINGS", "user/recordings"}}) {
+    set(token, paths.data / folder);
+  }
+  set("SHADERS", paths.shaders);
   set("LOGS", paths.temporary / "logs");
-  set("GLOBEBROWSING", paths.data / "globebrowsing");
   // May lie elsewhere: a link to what was prepared in a cache that cannot be written.
   allowReading(paths.cache / "data");
 }

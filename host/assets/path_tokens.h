@@ -16,7 +16,8 @@ namespace meridian::assets {
 class PathTokens {
  public:
   PathTokens() = default;
-  /// ASSETS, SYNC, CACHE, TEMPORARY, DATA, and USER (= DATA/user), USER_ASSETS, SCRIPTS, LOGS, GLOBEBROWSING.
+  /// ASSETS, SYNC, CACHE, TEMPORARY, DATA, SHADERS, LOGS, and the others of OpenSpace's configuration below DATA, such
+  /// as USER (DATA/user), SCRIPTS and GLOBEBROWSING.
   explicit PathTokens(const Paths& paths);
 
   /// `name` with or without "${" and "}"; `folder` is absolute.

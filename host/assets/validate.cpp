@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "host/assets/asset_graph.h"
+#include "host/assets/profile.h"
+
 namespace meridian::assets {
 
 namespace fs = std::filesystem;
@@ -18,7 +21,7 @@ Result<std::vector<fs::path>> findAssets(const fs::path& path) {
   fs::recursive_directory_iterator entries(path, fs::directory_options::skip_permission_denied, error);
   for (; !error && entries != fs::recursive_directory_iterator(); entries.increment(error)) {
     std::error_code ignored;
-    if (entries->path().extension() == ".asset" && entries->is_regular_file(ignored)) {
+    if (isAssetFile(entries->path()) && entries->is_regular_file(ignored)) {
       found.push_back(entries->path());
     }
   }
@@ -26,7 +29,7 @@ Result<std::vector<fs::path>> findAssets(const fs::path& path) {
     return failure(error.message(), path.string());
   }
   if (found.empty()) {
-    return failure("the folder holds no .asset file", path.string());
+    return failure("the folder holds no .asset or .jasset file", path.string());
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -41,6 +44,10 @@ fs::path assetsFolder(const fs::path& path, const fs::path& fallback) {
   for (fs::path folder = whole.parent_path(); folder != folder.parent_path(); folder = folder.parent_path()) {
     if (folder.filename() == "assets") {
       return folder;
+    }
+    // Profiles lie in a folder beside that of the assets.
+    if (isProfile(whole) && fs::is_directory(folder / "assets", ignored)) {
+      return folder / "assets";
     }
   }
   return fallback;

@@ -8,11 +8,12 @@
 
 namespace meridian::assets {
 
-/// The `.asset` files below a folder (or the one file), sorted. Errors: no such file or folder; nothing in it.
+/// The `.asset` and `.jasset` files below a folder (or the one file), sorted. Errors: no such file or folder; nothing
+/// in it.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> findAssets(const std::filesystem::path& path);
 
 /// What ${ASSETS} is for these assets: `path` itself if it is a folder, else the nearest folder named "assets" above
-/// it, else `fallback`.
+/// it (above or beside it, for a profile), else `fallback`.
 [[nodiscard]] std::filesystem::path assetsFolder(const std::filesystem::path& path,
                                                  const std::filesystem::path& fallback);
 

@@ -34,6 +34,7 @@ void OrbitNavigator::drag(Motion motion, const glm::dvec2& delta) {
   if (!std::isfinite(delta.x) || !std::isfinite(delta.y)) {
     return;
   }
+  ++stops_;
   const glm::dvec2 scaled = delta * sensitivity.get();
   switch (motion) {
     case Motion::Orbit:
@@ -53,11 +54,13 @@ void OrbitNavigator::drag(Motion motion, const glm::dvec2& delta) {
 
 void OrbitNavigator::scroll(double notches) {
   if (std::isfinite(notches)) {
+    ++stops_;
     pending_.zoom += zoomPerNotch * sensitivity.get() * notches;
   }
 }
 
 void OrbitNavigator::stop() {
+  ++stops_;
   pending_ = {};
   velocity_ = {};
 }

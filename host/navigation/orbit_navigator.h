@@ -34,6 +34,8 @@ class OrbitNavigator final : public PropertyOwner {
   bool keepClear();
   /// Forgets what is left of earlier motion.
   void stop();
+  /// How often that was, or the mouse moved the camera: by this others see that they no longer do.
+  [[nodiscard]] unsigned stops() const { return stops_; }
 
   /// Metres: height over the terrain of a globe anchor, else the distance from the bounding sphere (from the origin
   /// without one). What speed is proportional to; negative inside.
@@ -60,6 +62,7 @@ class OrbitNavigator final : public PropertyOwner {
   Camera& camera_;
   Motions pending_;
   Motions velocity_;  ///< per second
+  unsigned stops_ = 0;
 };
 
 }  // namespace meridian::navigation

@@ -1,5 +1,6 @@
 #include "host/navigation/script_library.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -185,6 +186,26 @@ ScriptResult setFocus(const Controls& controls, Arguments arguments) {
   return retarget ? none(lookAtAnchor(*controls.camera)) : ScriptResult(std::vector<Value>{});
 }
 
+/// The next (or the one before) of the nodes with the tag `GUI.Interesting`, which profiles mark.
+ScriptResult targetInteresting(const Controls& controls, bool next) {
+  std::vector<const scene::SceneNode*> marked;
+  std::ptrdiff_t present = -1;
+  for (const auto& node : controls.camera->scene().nodes()) {
+    const auto& tags = node->tags();
+    if (std::find(tags.begin(), tags.end(), "GUI.Interesting") != tags.end()) {
+      present = node.get() == &controls.camera->anchor() ? std::ssize(marked) : present;
+      marked.push_back(node.get());
+    }
+  }
+  if (marked.empty()) {
+    return std::vector<Value>{};
+  }
+  const auto count = std::ssize(marked);
+  const std::ptrdiff_t chosen = present < 0 ? 0 : (present + (next ? 1 : count - 1)) % count;
+  const std::vector<Value> focus{marked[static_cast<std::size_t>(chosen)]->identifier()};
+  return setFocus(controls, focus);
+}
+
 /// To the side of the node that the camera is on, three bounding spheres from its centre.
 ScriptResult jumpTo(const Controls& controls, Arguments arguments) {
   if (!arguments.empty() && arguments[0].isTable()) {
@@ -233,6 +254,12 @@ ScriptLibrary navigationLibrary(Camera& camera, OrbitNavigator& navigator) {
            {"setFocus", "node, retarget?, reset?", "Makes a node the anchor and looks at it", 1, 3, with(setFocus)},
            {"retargetAnchor", "", "Looks at the anchor", 0, 0,
             [controls](Arguments) { return none(lookAtAnchor(*controls.camera)); }},
+           {"retargetAim", "", "The same: the aim is the anchor", 0, 0,
+            [controls](Arguments) { return none(lookAtAnchor(*controls.camera)); }},
+           {"targetNextInterestingAnchor", "", "Makes the next marked node the anchor", 0, 0,
+            [controls](Arguments) { return targetInteresting(controls, true); }},
+           {"targetPreviousInterestingAnchor", "", "And the one before", 0, 0,
+            [controls](Arguments) { return targetInteresting(controls, false); }},
            {"jumpTo", "node or table, fade?", "Near a node, or where the table says", 1, 2, with(jumpTo)},
            {"distanceToFocus", "", "Metres to the anchor's origin", 0, 0,
             [controls](Arguments) { return distance(controls, false); }},

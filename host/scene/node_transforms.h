@@ -35,6 +35,23 @@ class Scale : public PropertyOwner {
   [[nodiscard]] virtual double factor(const Time& time) const = 0;  ///< positive
 };
 
+class Scene;
+
+/// What a transform is made from.
+struct TransformRequest {
+  Value table;
+  std::string where;             ///< the asset's file and line, for errors
+  std::string path;              ///< of the table within the node's: "Transform.Translation"
+  std::string folder;            ///< of the asset file; relative paths start there
+  std::string node;              ///< the identifier of the node that is being made
+  const Scene* scene = nullptr;  ///< outlives the transform; null: there are no other nodes
+
+  /// The place of a key for errors: "earth.asset:12: Transform.Translation.Position".
+  [[nodiscard]] std::string place(std::string_view key) const {
+    return where + ": " + path + (key.empty() ? "" : ".") + std::string(key);
+  }
+};
+
 /// From an asset's table, by its `Type`. Each type is one class and one line in the table of types beside it:
 ///   StaticTranslation {Position}, KeplerTranslation {Eccentricity, SemiMajorAxis (km), Inclination, AscendingNode,
 ///   ArgumentOfPeriapsis, MeanAnomaly (degrees), Epoch, Period}, SpiceTranslation {Target, Observer, Frame, FixedDate,
@@ -42,10 +59,15 @@ class Scale : public PropertyOwner {
 ///   StaticRotation {Rotation: 3 Euler angles in radians, a quaternion x, y, z, w, or a matrix of 9 by columns},
 ///   ConstantRotation {RotationAxis, RotationRate (revolutions per second)}, SpiceRotation {SourceFrame,
 ///   DestinationFrame, FixedDate, TimeOffset};
-///   StaticScale {Scale}.
-/// Errors: an unknown type, and one that OpenSpace has and a later version of ours will bring; bad keys.
-[[nodiscard]] Result<std::unique_ptr<Translation>> makeTranslation(const Value& table, std::string_view where);
-[[nodiscard]] Result<std::unique_ptr<Rotation>> makeRotation(const Value& table, std::string_view where);
-[[nodiscard]] Result<std::unique_ptr<Scale>> makeScale(const Value& table, std::string_view where);
+///   StaticScale {Scale}, NonUniformStaticScale {Scale}: the geometric mean, for our frames are similarities,
+///   TimeDependentScale {ReferenceDate, Speed, ClampToPositive};
+///   GlobeTranslation and GlobeRotation (globe_transforms.h), FixedRotation (fixed_rotation.h);
+///   Lua* {Script} (lua_transforms.h), Multi* {Translations, Rotations, Scales} and Timeline* {Keyframes,
+///   ShouldInterpolate} (composed_transforms.h); a list of tables is a Multi*;
+///   GPTranslation and HorizonsTranslation, which need files that we do not read: a warning and no translation.
+/// Scales stay within 1e-30 .. 1e30, whatever an asset says. Errors: an unknown type; bad keys.
+[[nodiscard]] Result<std::unique_ptr<Translation>> makeTranslation(const TransformRequest& request);
+[[nodiscard]] Result<std::unique_ptr<Rotation>> makeRotation(const TransformRequest& request);
+[[nodiscard]] Result<std::unique_ptr<Scale>> makeScale(const TransformRequest& request);
 
 }  // namespace meridian::scene

@@ -1,6 +1,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -9,6 +11,10 @@
 #include "host/api/property.h"
 #include "host/api/schema.h"
 #include "host/ephemeris/frames.h"
+#include "host/scene/composed_transforms.h"
+#include "host/scene/fixed_rotation.h"
+#include "host/scene/globe_transforms.h"
+#include "host/scene/lua_transforms.h"
 #include "host/scene/node_transforms.h"
 #include "host/scene/transform_types.h"
 
@@ -51,9 +57,9 @@ bool isRotation(const glm::dmat3& matrix) {
   return glm::determinant(matrix) > 0.0;
 }
 
-Result<std::unique_ptr<Rotation>> makeStatic(const Value& table, std::string_view where) {
-  const std::string place = std::string(where) + ": Transform.Rotation.Rotation";
-  const Value* rotation = table.find("Rotation");
+Result<std::unique_ptr<Rotation>> makeStatic(const TransformRequest& request) {
+  const std::string place = request.place("Rotation");
+  const Value* rotation = request.table.find("Rotation");
   const auto numbers = rotation != nullptr ? rotation->numbers() : std::nullopt;
   const std::size_t count = numbers ? numbers->size() : 0;
   if (count != 3 && count != 4 && count != 9) {
@@ -104,18 +110,19 @@ class ConstantRotation final : public Rotation {
   FloatProperty rate_;
 };
 
-Result<std::unique_ptr<Rotation>> makeConstant(const Value& table, std::string_view where) {
+Result<std::unique_ptr<Rotation>> makeConstant(const TransformRequest& request) {
+  const Value& table = request.table;
   static const Schema schema({{"RotationAxis", Type::Vector3, "In the parent's frame", true},
                               {"RotationRate", Type::Number, "Revolutions a second", true}});
-  if (auto valid = schema.validate(table, where, "Transform.Rotation"); !valid) {
+  if (auto valid = schema.validate(table, request.where, request.path); !valid) {
     return tl::make_unexpected(valid.error());
   }
   const std::vector<double> axis = *table.find("RotationAxis")->numbers(3);
   const double rate = *table.find("RotationRate")->number();
   const double length = glm::length(glm::dvec3(axis[0], axis[1], axis[2]));
   if (!(std::isfinite(length) && length > 0.0 && std::isfinite(rate))) {
-    return failure("the rotation axis and rate must be finite, and the axis not zero",
-                   std::string(where) + ": Transform.Rotation", "give an axis such as {0, 0, 1}");
+    return failure("the rotation axis and rate must be finite, and the axis not zero", request.place({}),
+                   "give an axis such as {0, 0, 1}");
   }
   return std::make_unique<ConstantRotation>(glm::dvec3(axis[0], axis[1], axis[2]), rate);
 }
@@ -134,41 +141,87 @@ class SpiceRotation final : public Rotation {
   TransformClock clock_;
 };
 
-Result<std::unique_ptr<Rotation>> makeSpice(const Value& table, std::string_view where) {
+Result<std::unique_ptr<Rotation>> makeSpice(const TransformRequest& request) {
+  const Value& table = request.table;
   static const Schema schema({{"SourceFrame", Type::String, "The node's axes: IAU_EARTH", true},
                               {"DestinationFrame", Type::String, "The parent's axes: GALACTIC", true},
                               {"FixedDate", Type::String, "UTC date at which the body stands still"},
                               {"TimeOffset", Type::Number, "Seconds added to the scene's time"}});
-  if (auto valid = schema.validate(table, where, "Transform.Rotation"); !valid) {
+  if (auto valid = schema.validate(table, request.where, request.path); !valid) {
     return tl::make_unexpected(valid.error());
   }
-  const std::string place = std::string(where) + ": Transform.Rotation";
   const auto source = ephemeris::Frame::fromName(*table.find("SourceFrame")->string());
-  if (!source) {
-    return failure(source.error().what, place + ".SourceFrame", source.error().remedy);
-  }
   const auto destination = ephemeris::Frame::fromName(*table.find("DestinationFrame")->string());
-  if (!destination) {
-    return failure(destination.error().what, place + ".DestinationFrame", destination.error().remedy);
-  }
-  const auto clock = TransformClock::fromTable(table, place);
+  const auto clock = TransformClock::fromTable(request);
   if (!clock) {
     return tl::make_unexpected(clock.error());
+  }
+  for (const auto* frame : {&source, &destination}) {
+    if (!*frame) {
+      warnOnce(request, "frame " + frame->error().what, frame->error().what + "; nodes in it are not turned");
+      return std::make_unique<StaticRotation>(glm::dmat3(1.0));
+    }
   }
   return std::make_unique<SpiceRotation>(*source, *destination, *clock);
 }
 
+class MultiRotation final : public Rotation {
+ public:
+  explicit MultiRotation(std::vector<std::unique_ptr<Rotation>> parts) : parts_(std::move(parts)) {}
+  /// The first of them is applied first.
+  [[nodiscard]] glm::dmat3 matrix(const Time& time) const override {
+    glm::dmat3 product(1.0);
+    for (const auto& part : parts_) {
+      product = part->matrix(time) * product;
+    }
+    return product;
+  }
+
+ private:
+  std::vector<std::unique_ptr<Rotation>> parts_;
+};
+
+Result<std::unique_ptr<Rotation>> makeMulti(const TransformRequest& request) {
+  return makeParts<Rotation>(request, "Rotations", makeRotation).map([](auto parts) {
+    return std::make_unique<MultiRotation>(std::move(parts));
+  });
+}
+
+class TimelineRotation final : public Rotation {
+ public:
+  explicit TimelineRotation(Timeline<Rotation> timeline) : timeline_(std::move(timeline)) {}
+  [[nodiscard]] glm::dmat3 matrix(const Time& time) const override {
+    const auto [before, after, share] = timeline_.at(time);
+    const glm::dmat3 from = before.matrix(time);
+    if (!(share > 0.0)) {
+      return from;
+    }
+    return glm::mat3_cast(glm::slerp(glm::quat_cast(from), glm::quat_cast(after.matrix(time)), share));
+  }
+
+ private:
+  Timeline<Rotation> timeline_;
+};
+
+Result<std::unique_ptr<Rotation>> makeTimeline(const TransformRequest& request) {
+  return Timeline<Rotation>::make(request, makeRotation).map([](auto timeline) {
+    return std::make_unique<TimelineRotation>(std::move(timeline));
+  });
+}
+
 constexpr std::array types = {TransformType<Rotation>{"StaticRotation", makeStatic},
                               TransformType<Rotation>{"ConstantRotation", makeConstant},
-                              TransformType<Rotation>{"SpiceRotation", makeSpice}};
-
-constexpr std::array<std::string_view, 5> later = {"FixedRotation", "GlobeRotation", "LuaRotation", "MultiRotation",
-                                                   "TimelineRotation"};
+                              TransformType<Rotation>{"SpiceRotation", makeSpice},
+                              TransformType<Rotation>{"FixedRotation", makeFixedRotation},
+                              TransformType<Rotation>{"GlobeRotation", makeGlobeRotation},
+                              TransformType<Rotation>{"LuaRotation", makeLuaRotation},
+                              TransformType<Rotation>{"MultiRotation", makeMulti},
+                              TransformType<Rotation>{"TimelineRotation", makeTimeline}};
 
 }  // namespace
 
-Result<std::unique_ptr<Rotation>> makeRotation(const Value& table, std::string_view where) {
-  return makeByType<Rotation>(table, where, types, later);
+Result<std::unique_ptr<Rotation>> makeRotation(const TransformRequest& request) {
+  return request.table.table()->list.empty() ? makeByType<Rotation>(request, types) : makeMulti(request);
 }
 
 }  // namespace meridian::scene

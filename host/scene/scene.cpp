@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "host/api/log.h"
+#include "host/scene/transform_types.h"
 
 namespace meridian::scene {
 
@@ -32,25 +33,30 @@ std::vector<std::string> tagsOf(const Value& table) {
   return tags;
 }
 
-/// One of `Transform`'s three tables. A list of several, as OpenSpace takes for rotations and scales, is an error.
+/// One of `Transform`'s three tables, if it is there.
 template <class Kind, class Make>
-Result<void> makePart(const Value* transform, std::string_view key, std::string_view where, Make make,
+Result<void> makePart(TransformRequest request, const Value* transform, std::string_view key, Make make,
                       std::unique_ptr<Kind>& part) {
   const Value* table = transform != nullptr ? transform->find(key) : nullptr;
   if (table == nullptr) {
     return {};
   }
-  const std::string place = std::string(where);
-  if (!table->table()->list.empty()) {
-    return failure("a list of transforms comes with a later version", place + ": Transform." + std::string(key),
-                   "give one transform; put further ones on parent nodes");
-  }
-  auto made = make(*table, place);
+  request.table = *table;
+  request.path = "Transform." + std::string(key);
+  auto made = make(request);
   if (!made) {
     return tl::make_unexpected(made.error());
   }
   part = std::move(*made);
   return {};
+}
+
+bool isAtOrBelow(const SceneNode& node, const SceneNode& top) {
+  const SceneNode* each = &node;
+  while (each != nullptr && each != &top) {
+    each = each->parentNode();
+  }
+  return each == &top;
 }
 
 Result<void> checkGui(const Value* gui, std::string_view where) {
@@ -129,8 +135,9 @@ Result<std::unique_ptr<Renderable>> Scene::makeRenderable(const Value& table, st
     return failure("globes need the module globebrowsing, which this program was built without",
                    std::string(where) + ": Renderable.Type", "build with MERIDIAN_MODULE_GLOBEBROWSING=ON");
   }
-  log::warning("{}: '{}' has a renderable of the unknown type '{}'; the node is there, but shows nothing", where,
-               identifier, type);
+  warnOnce("renderable " + type, std::string(where) + ": '" + std::string(identifier) +
+                                     "' has a renderable of the type '" + type +
+                                     "', which is none of ours; nodes with it are there, but show nothing");
   return nullptr;
 }
 
@@ -168,9 +175,10 @@ Result<SceneNode*> Scene::addNode(const Value& table, std::string_view where, st
       return tl::make_unexpected(valid.error());
     }
   }
-  for (auto made : {makePart(transform, "Translation", where, makeTranslation, parts.translation),
-                    makePart(transform, "Rotation", where, makeRotation, parts.rotation),
-                    makePart(transform, "Scale", where, makeScale, parts.scale)}) {
+  const TransformRequest request{{}, std::string(where), {}, std::string(folder), parts.identifier, this};
+  for (auto made : {makePart(request, transform, "Translation", makeTranslation, parts.translation),
+                    makePart(request, transform, "Rotation", makeRotation, parts.rotation),
+                    makePart(request, transform, "Scale", makeScale, parts.scale)}) {
     if (!made) {
       return tl::make_unexpected(made.error());
     }
@@ -201,15 +209,9 @@ Result<void> Scene::removeNode(std::string_view identifier) {
   if (top == &root()) {
     return failure("the root of the scene cannot be removed", {}, "remove the nodes below it");
   }
-  const auto isBelow = [&](const SceneNode* each) {
-    while (each != nullptr && each != top) {
-      each = each->parentNode();
-    }
-    return each == top;
-  };
   // Later nodes are never parents of earlier ones.
   for (std::size_t i = nodes_.size(); i-- > 0;) {
-    if (!isBelow(nodes_[i].get())) {
+    if (!isAtOrBelow(*nodes_[i], *top)) {
       continue;
     }
     for (const auto& [key, callback] : removalCallbacks_) {
@@ -219,6 +221,39 @@ Result<void> Scene::removeNode(std::string_view identifier) {
     nodes_.erase(nodes_.begin() + static_cast<std::ptrdiff_t>(i));
   }
   return {};
+}
+
+Result<void> Scene::setParent(std::string_view identifier, std::string_view parentIdentifier) {
+  SceneNode* moved = node(identifier);
+  SceneNode* parent = node(parentIdentifier);
+  if (moved == nullptr || parent == nullptr) {
+    return failure("there is no node '" + std::string(moved == nullptr ? identifier : parentIdentifier) + "'", {},
+                   "check the identifier");
+  }
+  if (moved == &root() || isAtOrBelow(*parent, *moved)) {
+    return failure("'" + std::string(identifier) + "' cannot hang on '" + std::string(parentIdentifier) + "'", {},
+                   "name a parent that is not below it; the root has none");
+  }
+  moved->setParentNode(*parent);
+  // Parents stay before children.
+  const auto branch = std::stable_partition(nodes_.begin(), nodes_.end(),
+                                            [&](const auto& each) { return !isAtOrBelow(*each, *moved); });
+  std::for_each(branch, nodes_.end(), [&](const auto& each) { each->setParentNode(*each->parentNode()); });
+  return {};
+}
+
+void Scene::warnOnce(const std::string& subject, const std::string& message) const {
+  if (warned_.insert(subject).second) {
+    log::warning("{}", message);
+  }
+}
+
+void warnOnce(const TransformRequest& request, const std::string& subject, const std::string& message) {
+  if (request.scene != nullptr) {
+    request.scene->warnOnce(subject, request.where + ": " + message);
+  } else {
+    log::warning("{}: {}", request.where, message);
+  }
 }
 
 int Scene::onRemove(std::function<void(SceneNode&)> callback) {

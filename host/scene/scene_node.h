@@ -32,6 +32,11 @@ class SceneNode final : public PropertyOwner {
   explicit SceneNode(Parts parts);
 
   [[nodiscard]] SceneNode* parentNode() const { return parts_.parent; }
+  /// For Scene::setParent, which keeps the order of nodes.
+  void setParentNode(SceneNode& parent) {
+    parts_.parent = &parent;
+    depth_ = parent.depth() + 1;
+  }
   [[nodiscard]] const Translation* translation() const { return parts_.translation.get(); }
   [[nodiscard]] int depth() const { return depth_; }  ///< of the root: 0
   [[nodiscard]] Renderable* renderable() const { return parts_.renderable.get(); }

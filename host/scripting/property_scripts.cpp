@@ -230,6 +230,22 @@ ScriptResult readValue(const Context& context, Arguments arguments) {
   return std::vector{property->value()};
 }
 
+ScriptResult invertBoolean(const Context& context, Arguments arguments) {
+  const Result<std::string> uri = text(arguments, 0, "uri");
+  if (!uri) {
+    return tl::make_unexpected(uri.error());
+  }
+  Property* property = context.index->find(*uri);
+  const std::optional<bool> value = property != nullptr ? property->value().boolean() : std::nullopt;
+  if (!value) {
+    return failure(fmt::format("there is no boolean property \"{}\"", *uri));
+  }
+  if (Result<void> set = property->set(!*value); !set) {
+    return tl::make_unexpected(set.error());
+  }
+  return {};
+}
+
 ScriptResult listUris(const Context& context, Arguments arguments) {
   const Result<std::string> wanted = text(arguments, 0, "pattern");
   const Result<PropertyPattern> pattern =
@@ -280,6 +296,8 @@ ScriptLibrary propertyLibrary(PropertyOwner& root, PropertyIndex& index, Propert
             [context](Arguments a) { return setFromScript(context, a, true); }},
            {"propertyValue", "uri", "The value of a property.", 1, 1, read},
            {"getPropertyValue", "uri", "Older name of propertyValue.", 1, 1, read},
+           {"invertBooleanProperty", "uri", "Switches a property that is true or false.", 1, 1,
+            [context](Arguments a) { return invertBoolean(context, a); }},
            {"hasProperty", "uri", "Whether there is a property of that URI.", 1, 1,
             [context](Arguments a) -> ScriptResult {
               const std::string* uri = a[0].string();

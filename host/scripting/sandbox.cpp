@@ -5,6 +5,7 @@
 #include <lua.hpp>
 
 #include "host/api/log.h"
+#include "host/scripting/string_functions.h"
 
 namespace meridian::scripting {
 
@@ -185,6 +186,7 @@ void openSandbox(lua_State* lua) {
   lua_pushnil(lua);
   lua_setfield(lua, -2, "dump");
   lua_pop(lua, 1);
+  openStringFunctions(lua);
   lua_pushcfunction(lua, safePrint);
   lua_setglobal(lua, "print");
 

@@ -61,6 +61,20 @@ Result<Time> movedOnCalendar(Time base, double months) {
   return Time::fromUtc(fmt::format("{:04}-{:02}-{:02}{}", newYear, newMonth, newDay, text.substr(day)));
 }
 
+/// "2026 NOV 22 21:17:05.250".
+std::string asSpiceWritesIt(Time time) {
+  static constexpr std::array<std::string_view, 12> months{"JAN", "FEB", "MAR", "APR", "MAY", "JUN",
+                                                           "JUL", "AUG", "SEP", "OCT", "NOV", "DEC"};
+  const std::string utc = time.utc();
+  const std::size_t day = utc.find('T');
+  if (day == std::string::npos || day < 8) {
+    return utc;
+  }
+  const int month = std::stoi(utc.substr(day - 5, 2));
+  return fmt::format("{} {} {} {}", utc.substr(0, day - 6), months.at(static_cast<std::size_t>(month - 1)),
+                     utc.substr(day - 2, 2), utc.substr(day + 1));
+}
+
 ScriptFunction action(std::string name, std::string description, std::function<void()> act) {
   return {std::move(name), "", std::move(description), 0, 0, [act = std::move(act)](Arguments) -> ScriptResult {
             act();
@@ -175,6 +189,9 @@ void addTimeFunctions(ScriptLibrary& library, Clock& clock) {
   functions.push_back(
       reading("currentTime", "TDB seconds past J2000.", [&clock] { return clock.time().tdbSeconds(); }));
   functions.push_back(reading("UTC", "The simulation's time as a UTC date.", [&clock] { return clock.time().utc(); }));
+  functions.push_back(
+      {"SPICE", "format?", "The same as SPICE writes it by default; formats are not heeded.", 0, 1,
+       [&clock](Arguments) -> ScriptResult { return std::vector<Value>{asSpiceWritesIt(clock.time())}; }});
 }
 
 void addConversions(ScriptLibrary& library) {

@@ -2,6 +2,7 @@
 
 #include "globebrowsing/globe_services.h"
 #include "globebrowsing/layer_panel.h"
+#include "globebrowsing/map_servers.h"
 #include "globebrowsing/renderable_globe.h"
 #include "globebrowsing/script_library.h"
 
@@ -18,12 +19,13 @@ class GlobeBrowsingModule final : public Module {
     host.registerRenderable("RenderableGlobe", [this](const RenderableRequest& request) {
       return RenderableGlobe::create(request, *services_);
     });
-    host.registerScriptLibrary(makeScriptLibrary(host));
+    host.registerScriptLibrary(makeScriptLibrary(host, servers_));
     host.registerPanel(std::make_unique<LayerPanel>(host));
     return {};
   }
 
  private:
+  MapServers servers_;
   std::unique_ptr<GlobeServices> services_;
 };
 

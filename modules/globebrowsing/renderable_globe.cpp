@@ -103,6 +103,25 @@ Result<void> RenderableGlobe::load(const RenderableRequest& request) {
       return failure(set.error().what, request.where + ": Renderable." + property->identifier(), set.error().remedy);
     }
   }
+  static constexpr std::string_view laterOrNever[] = {"Type",
+                                                      "Atmosphere",
+                                                      "CameraMinHeight",
+                                                      "Debug",
+                                                      "DimInAtmosphere",
+                                                      "Labels",
+                                                      "LightSource",
+                                                      "LightSourceNode",
+                                                      "RenderBinMode",
+                                                      "Rings",
+                                                      "ShadowGroup",
+                                                      "SegmentsPerPatch",
+                                                      "Shadows",
+                                                      "InteractionDepthBelowEllipsoid",
+                                                      "OrenNayarRoughness",
+                                                      "ModelSpaceRenderingCutoffLevel"};
+  for (const UnknownKey& unknown : unknownKeys(request.table, {&schema()}, laterOrNever)) {
+    notes_.push_back(noteOf(unknown, request.where + ": Renderable"));
+  }
   if (const Value* layers = request.table.find("Layers")) {
     layerErrors_ = layers_.load(*layers, request.where, "Renderable.Layers", request.folder);
     for (const Error& error : layerErrors_) {
@@ -235,17 +254,44 @@ void RenderableGlobe::draw(const FrameContext& frame, std::size_t view) {
   }
 }
 
+Result<void> RenderableGlobe::addLayer(const std::string& group, const ProviderRequest& request) {
+  const std::optional<NamedGroup> named = layerGroupFromName(group);
+  const Value* identifier = request.table.find("Identifier");
+  const bool isTaken = named && identifier != nullptr && identifier->string() != nullptr &&
+                       layers_.group(named->group).find(*identifier->string()) != nullptr;
+  if (isTaken) {
+    log::info("{}: {} has a layer {} already; the other one is left out", request.where, group, *identifier->string());
+    return {};
+  }
+  const Result<Layer*> added = layers_.addLayer(group, request);
+  if (!added && !named) {
+    return tl::make_unexpected(added.error());
+  }
+  if (!added) {
+    log::error("{}", added.error().message());
+    layerErrors_.push_back(added.error());
+    if (identifier != nullptr && identifier->string() != nullptr) {
+      refused_.insert(*identifier->string());
+    }
+  }
+  return {};
+}
+
 Renderable::Contents RenderableGlobe::contents() const {
-  Contents found{1, layerErrors_.size(), 0, {}};
+  Contents found;
+  found.globes = 1;
+  found.notes = notes_;
   for (const LayerGroupId id : allLayerGroups) {
     for (const auto& layer : layers_.group(id).layers()) {
-      ++found.layers;
-      if (const Result<void> checked = layer->provider()->check()) {
-        ++found.usableLayers;
-      } else {
-        found.unusable.push_back(checked.error());
-      }
+      const Result<void> checked = layer->provider()->check();
+      found.layers.push_back({std::string(globebrowsing::name(id)) + '.' + layer->identifier(),
+                              checked ? std::nullopt : std::optional(checked.error())});
+      const std::vector<Error> unknown = unknownLayerKeys(layer->request());
+      found.notes.insert(found.notes.end(), unknown.begin(), unknown.end());
     }
+  }
+  for (const Error& error : layerErrors_) {
+    found.layers.push_back({"refused", error});
   }
   return found;
 }

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,12 @@ class RenderableGlobe final : public Renderable, public Ground {
   [[nodiscard]] static const Schema& schema();
 
   [[nodiscard]] LayerManager& layers() { return layers_; }
+  /// Adds a layer by its table, as scripts do: one that is wrong is logged, kept in layerErrors() and left out, and an
+  /// identifier that the group has is left out with a note in the log. Errors: an unknown group.
+  Result<void> addLayer(const std::string& group, const ProviderRequest& request);
   [[nodiscard]] const std::vector<Error>& layerErrors() const { return layerErrors_; }
+  /// Whether addLayer left out a layer of that name because its table was wrong.
+  [[nodiscard]] bool wasRefused(const std::string& identifier) const { return refused_.count(identifier) != 0; }
 
   Result<void> initializeGraphics(graphics::Graphics& graphics) override;
   void deinitializeGraphics() override;
@@ -86,6 +92,8 @@ class RenderableGlobe final : public Renderable, public Ground {
   GlobeServices& services_;
   LayerManager layers_;
   std::vector<Error> layerErrors_;
+  std::set<std::string> refused_;  ///< identifiers of layers that addLayer left out
+  std::vector<Error> notes_;
   graphics::Graphics* graphics_ = nullptr;
   std::unique_ptr<Surface> surface_;
   std::unique_ptr<Surface> replacement_;  ///< of surface_, as soon as it is settled

@@ -6,29 +6,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "globebrowsing/renderable_globe.h"
+#include "globebrowsing/geo_json_scripts.h"
+#include "globebrowsing/gibs.h"
+#include "globebrowsing/map_server_scripts.h"
+#include "globebrowsing/patch_scripts.h"
+#include "globebrowsing/script_arguments.h"
 
 namespace meridian::globebrowsing {
 
 namespace {
-
-Result<std::string> text(const Value& value, std::string_view argument) {
-  if (const std::string* found = value.string()) {
-    return *found;
-  }
-  return failure(fmt::format("{} must be a string, found {}", argument, kindName(value.kind())));
-}
-
-/// The globe of the first argument, or the error that a script gets.
-Result<RenderableGlobe*> globe(Host& host, const Value& node) {
-  return text(node, "globe").and_then([&](const std::string& identifier) -> Result<RenderableGlobe*> {
-    if (auto* found = dynamic_cast<RenderableGlobe*>(host.renderable(identifier))) {
-      return found;
-    }
-    return failure(fmt::format("there is no globe \"{}\"", identifier), {},
-                   "openspace.globebrowsing.globes() lists those there are");
-  });
-}
 
 /// A globe's group by any of its names, or the error that a script gets.
 Result<LayerGroup*> groupOf(RenderableGlobe& globe, const Value& group) {
@@ -45,31 +31,22 @@ Result<LayerGroup*> groupOf(RenderableGlobe& globe, const Value& group) {
   });
 }
 
-ScriptResult nothing() {
-  return std::vector<Value>{};
-}
-
 ScriptResult addLayer(Host& host, std::span<const Value> arguments) {
-  return globe(host, arguments[0]).and_then([&](RenderableGlobe* found) -> ScriptResult {
-    const Result<std::string> group = text(arguments[1], "group");
-    if (!group) {
-      return tl::make_unexpected(group.error());
-    }
-    const Result<Layer*> added = found->layers().addLayer(*group, {arguments[2], "addLayer", *group, {}});
-    return added ? nothing() : tl::make_unexpected(added.error());
-  });
+  const Result<std::string> group = text(arguments[1], "group");
+  return group ? none(addLayerFromScript(host, arguments[0], *group, arguments[2]))
+               : tl::make_unexpected(group.error());
 }
 
 ScriptResult deleteLayer(Host& host, std::span<const Value> arguments) {
   return globe(host, arguments[0]).and_then([&](RenderableGlobe* found) -> ScriptResult {
-    const Value* named = arguments[2].isTable() ? arguments[2].find("Identifier") : &arguments[2];
     const Result<std::string> group = text(arguments[1], "group");
-    const Result<std::string> layer = text(named != nullptr ? *named : Value(), "layer");
+    const Result<std::string> layer = identifierOf(arguments[2], "layer");
     if (!group || !layer) {
       return tl::make_unexpected(group ? layer.error() : group.error());
     }
     const Result<void> deleted = found->layers().deleteLayer(*group, *layer);
-    return deleted ? nothing() : tl::make_unexpected(deleted.error());
+    // Assets delete all that they added; that one of them was left out has been told.
+    return !deleted && found->wasRefused(*layer) ? none({}) : none(deleted);
   });
 }
 
@@ -116,38 +93,47 @@ ScriptResult moveLayer(Host& host, std::span<const Value> arguments) {
     if (place == all.end()) {
       return failure(fmt::format("there is no layer \"{}\" in {}", *destination, name(own.id())));
     }
-    const Result<void> moved =
-        found->layers().moveLayer(name(own.id()), *source, static_cast<int>(place - all.begin()));
-    return moved ? nothing() : tl::make_unexpected(moved.error());
+    return none(found->layers().moveLayer(name(own.id()), *source, static_cast<int>(place - all.begin())));
   });
 }
 
-ScriptResult globes(Host& host) {
-  Table identifiers;
+/// Globes whose map servers are known come first; then the place (from 1) of the first without.
+ScriptResult globes(Host& host, const MapServers& servers) {
+  std::vector<Value> identifiers;
   for (const std::string& node : host.nodes()) {
     if (dynamic_cast<RenderableGlobe*>(host.renderable(node)) != nullptr) {
-      identifiers.list.emplace_back(node);
+      identifiers.emplace_back(node);
     }
   }
-  return std::vector<Value>{Value(std::move(identifiers))};
+  const auto firstWithout = std::stable_partition(
+      identifiers.begin(), identifiers.end(), [&](const Value& node) { return !servers.of(*node.string()).empty(); });
+  const auto place = static_cast<int>(firstWithout - identifiers.begin()) + 1;
+  return std::vector<Value>{Table{{Table{std::move(identifiers), {}}, place}, {}}};
 }
 
 }  // namespace
 
-ScriptLibrary makeScriptLibrary(Host& host) {
+ScriptLibrary makeScriptLibrary(Host& host, MapServers& servers) {
   using Arguments = std::span<const Value>;
   const auto bind = [&host](ScriptResult (*function)(Host&, Arguments)) {
     return [&host, function](Arguments arguments) { return function(host, arguments); };
   };
-  return {"globebrowsing",
-          {{"addLayer", "globe, group, table", "Adds a layer to a globe's group", 3, 3, bind(addLayer)},
-           {"deleteLayer", "globe, group, layer", "Deletes a layer, given by identifier or by its table", 3, 3,
-            bind(deleteLayer)},
-           {"layers", "globe, group", "The identifiers of a group's layers, lowest first", 2, 2, bind(layers)},
-           {"getLayers", "globe, group", "As layers, by its older name", 2, 2, bind(layers)},
-           {"moveLayer", "globe, group, source, destination",
-            "Moves a layer to another's place; layers by identifier or by place from 0", 4, 4, bind(moveLayer)},
-           {"globes", "", "The identifiers of all globes", 0, 0, [&host](Arguments) { return globes(host); }}}};
+  ScriptLibrary library{
+      "globebrowsing",
+      {{"addLayer", "globe, group, table", "Adds a layer to a globe's group", 3, 3, bind(addLayer)},
+       {"deleteLayer", "globe, group, layer", "Deletes a layer, given by identifier or by its table", 3, 3,
+        bind(deleteLayer)},
+       {"layers", "globe, group", "The identifiers of a group's layers, lowest first", 2, 2, bind(layers)},
+       {"getLayers", "globe, group", "As layers, by its older name", 2, 2, bind(layers)},
+       {"moveLayer", "globe, group, source, destination",
+        "Moves a layer to another's place; layers by identifier or by place from 0", 4, 4, bind(moveLayer)},
+       {"globes", "", "{ identifiers of all globes, place of the first whose servers are not known }", 0, 0,
+        [&host, &servers](Arguments) { return globes(host, servers); }}}};
+  for (auto&& functions :
+       {gibsFunctions(host), mapServerFunctions(host, servers), patchFunctions(host), geoJsonFunctions(host)}) {
+    library.functions.insert(library.functions.end(), functions.begin(), functions.end());
+  }
+  return library;
 }
 
 }  // namespace meridian::globebrowsing

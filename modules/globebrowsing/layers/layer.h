@@ -40,6 +40,8 @@ class Layer final : public PropertyOwner {
         std::function<void(const Layer&, Change)> changed);
   ~Layer() override;
 
+  /// What its provider is made from.
+  [[nodiscard]] const ProviderRequest& request() const { return request_; }
   [[nodiscard]] LayerGroupId group() const { return group_; }
   [[nodiscard]] int zIndex() const { return zIndex_; }
   void setZIndex(int zIndex) { zIndex_ = zIndex; }

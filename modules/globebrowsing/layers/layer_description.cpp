@@ -1,5 +1,6 @@
 #include "globebrowsing/layers/layer_description.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace meridian::globebrowsing {
@@ -105,6 +106,26 @@ const Schema& layerAdjustmentSchema() {
       {"ChromaKeyTolerance", Type::Number, "how far from it colours still do, in 0..1", false, 0.0, 1.0},
   });
   return schema;
+}
+
+Error noteOf(const UnknownKey& unknown, const std::string& where) {
+  return {"unknown key " + unknown.key + (unknown.meant.empty() ? "" : ", did you mean " + unknown.meant), where};
+}
+
+std::vector<Error> unknownLayerKeys(const ProviderRequest& request) {
+  // Those that did something once, and those that the host adds.
+  static constexpr std::string_view ignored[] = {"PadTiles", "Fallback", "GlobeName", "LayerGroupID"};
+  std::vector<Error> notes;
+  const std::span<const ProviderType> types = providerTypes();
+  const Result<LayerType> type = layerTypeOf(request);
+  const auto provider =
+      std::find_if(types.begin(), types.end(), [&](const auto& one) { return type && one.type == *type; });
+  if (provider != types.end()) {
+    for (const UnknownKey& unknown : unknownKeys(request.table, {&layerSchema(), provider->schema}, ignored)) {
+      notes.push_back(noteOf(unknown, placeOf(request, {})));
+    }
+  }
+  return notes;
 }
 
 Result<LayerDescription> readLayer(const ProviderRequest& request, LayerGroupId group, BlendMode mode) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -15,10 +16,11 @@
 
 namespace meridian::globebrowsing {
 
-/// The ranges of a layer's numbers, for asset tables and properties alike.
+/// The ranges of a layer's numbers, for asset tables and properties alike. Assets go beyond OpenSpace's 0 to 20 for the
+/// multiplier: a height map in 8 bits has 40 metres a step.
 inline constexpr NumberRange opacityRange{0.0, 1.0};
 inline constexpr NumberRange gammaRange{0.0, 5.0};
-inline constexpr NumberRange multiplierRange{0.0, 20.0};
+inline constexpr NumberRange multiplierRange{0.0, 1000.0};
 inline constexpr NumberRange offsetRange{-10000.0, 10000.0};
 
 /// A layer's asset table, read.
@@ -44,6 +46,11 @@ struct LayerDescription {
 [[nodiscard]] const Schema& layerSchema();
 [[nodiscard]] const Schema& layerSettingsSchema();
 [[nodiscard]] const Schema& layerAdjustmentSchema();
+
+/// "unknown key X, did you mean Y".
+[[nodiscard]] Error noteOf(const UnknownKey& unknown, const std::string& where);
+/// What a layer's table holds that neither layers nor its provider know. Such keys do nothing, but may be misspelt.
+[[nodiscard]] std::vector<Error> unknownLayerKeys(const ProviderRequest& request);
 
 /// Reads a layer's table for that group and makes its provider; without input or output. Errors say file, line and key
 /// path. `mode` is the blend mode of a table that names none.

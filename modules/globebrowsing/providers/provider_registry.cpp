@@ -84,7 +84,10 @@ Result<LayerType> layerTypeOf(const ProviderRequest& request) {
                    "use one of: " + namesOfProviders());
   }
   if (find(*type) == nullptr) {
-    return failure("layers of type " + std::string(name(*type)) + " are not supported", placeOf(request, "Type"),
+    const std::string_view why = *type == LayerType::VideoTileProvider    ? " are not available: no videos are played"
+                                 : *type == LayerType::SpoutImageProvider ? " are not available: Spout is for Windows"
+                                                                          : " are not supported";
+    return failure("layers of type " + std::string(name(*type)) + std::string(why), placeOf(request, "Type"),
                    "use one of: " + namesOfProviders());
   }
   return *type;

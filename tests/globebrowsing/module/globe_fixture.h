@@ -20,6 +20,7 @@
 #include "globebrowsing/renderable_globe.h"
 #include "host/graphics/projection.h"
 #include "host/graphics/render_target.h"
+#include "host/scripting/lua_data.h"
 
 namespace meridian::globebrowsing {
 
@@ -63,6 +64,21 @@ class FakeHost final : public Host {
     return names;
   }
 
+  [[nodiscard]] ScriptPlace scriptPlace() const override { return {"test.lua:1", folder}; }
+  [[nodiscard]] Result<std::filesystem::path> readablePath(std::string_view path) const override {
+    return std::filesystem::path(path).is_absolute() ? std::filesystem::path(path)
+                                                     : folder / std::filesystem::path(path);
+  }
+  [[nodiscard]] Result<Value> readLuaData(const std::filesystem::path& file) const override {
+    return scripting::readLuaData(file);
+  }
+  Result<void> addSceneGraphNode(const Value& table) override {
+    addedNodes.push_back(table);
+    return {};
+  }
+
+  std::string folder;
+  std::vector<Value> addedNodes;
   std::map<std::string, RenderableFactory> factories;
   std::vector<ScriptLibrary> libraries;
   std::vector<std::unique_ptr<Panel>> panels;
@@ -90,6 +106,7 @@ class GlobeTest : public GpuTest {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     host_ = std::make_unique<FakeHost>(paths_, statistics_);
+    host_->folder = folder_.string();
     module_ = makeModule();
     ASSERT_TRUE(module_->initialize(*host_));
     auto target = graphics::RenderTarget::create({{width, height}, 1});

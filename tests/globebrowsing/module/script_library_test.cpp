@@ -53,7 +53,7 @@ TEST_F(ScriptLibraryTest, ListsGlobes) {
   addGlobe({}, {}, "Another");
   const auto found = engine_.evaluate("openspace.globebrowsing.globes()", "test.lua");
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->front(), listOf({"Another", "Globe"}));
+  EXPECT_EQ(found->front(), listOf({listOf({"Another", "Globe"}), 1}));
 }
 
 TEST_F(ScriptLibraryTest, WrongArgumentsGiveAnErrorWithItsPlaceAndChangeNothing) {

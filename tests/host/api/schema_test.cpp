@@ -31,5 +31,19 @@ TEST(Schema, RefusesWrongTypesRangesAndChoices) {
   EXPECT_FALSE(layer.validate(3.0, ""));
 }
 
+TEST(UnknownKeys, AreNamedWithWhatTheyResemble) {
+  const Schema one({{"FilePath", Schema::Type::String, ""}, {"ZIndex", Schema::Type::Integer, ""}});
+  const Schema other({{"Identifier", Schema::Type::String, ""}});
+  const Value table =
+      Table{{}, {{"filepath", 1}, {"Identifer", 2}, {"ZIndex", 3}, {"Old", 4}, {"Nonsense", 5}, {"X", 6}}};
+  static constexpr std::string_view ignored[] = {"Old"};
+  const std::vector<UnknownKey> unknown = unknownKeys(table, {&one, &other}, ignored);
+  std::string text;
+  for (const UnknownKey& each : unknown) {
+    text += each.key + "=" + each.meant + ' ';
+  }
+  EXPECT_EQ(text, "Identifer=Identifier Nonsense= X= filepath=FilePath ");
+}
+
 }  // namespace
 }  // namespace meridian

@@ -42,11 +42,18 @@ TEST(Time, WritesWhatItReads) {
   }
   EXPECT_EQ(Time::fromUtc("2026-11-22 21:17Z")->utc(), "2026-11-22T21:17:00.000");
   EXPECT_EQ(Time::fromUtc("2026-1-2")->utc(), "2026-01-02T00:00:00.000");
+  // As SPICE writes dates.
+  EXPECT_EQ(Time::fromUtc("2018 NOV 26 19:39:01.68")->utc(), "2018-11-26T19:39:01.680");
+  EXPECT_EQ(Time::fromUtc("2000-JUL-14 10:03:00.000")->utc(), "2000-07-14T10:03:00.000");
+  EXPECT_EQ(Time::fromUtc("1850 jan 01")->utc(), "1850-01-01T00:00:00.000");
+  EXPECT_EQ(Time::fromUtc("2026/11/22 21:17:05 Z")->utc(), "2026-11-22T21:17:05.000");
+  EXPECT_EQ(Time::fromUtc("2026 November 22")->utc(), "2026-11-22T00:00:00.000");
 }
 
 TEST(Time, RefusesWhatTheCalendarDoesNotHave) {
   for (const char* text : {"", "today", "2026-02-29", "2026-13-01", "2026-00-10", "2026-01-01T25:00:00",
-                           "2026-01-01T00:60:00", "2026-01-01T00:00:61", "99999-01-01", "2026-01-01T00:00:00 x"}) {
+                           "2026-01-01T00:60:00", "2026-01-01T00:00:61", "99999-01-01", "2026-01-01T00:00:00 x",
+                           "2026 NOX 01", "2026 NO 01", "2026 NOV", "2026NOV01"}) {
     EXPECT_FALSE(Time::fromUtc(text)) << text;
   }
   EXPECT_FALSE(Time::fromUtc(std::string(1000, '1')));

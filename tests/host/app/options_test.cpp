@@ -131,6 +131,7 @@ const WrongCase wrongCases[] = {
     {"SizeNegative", {"--size", "1280x-720"}, "'1280x-720'"},
     {"SizeNaN", {"--size", "nanxnan"}, "--size"},
     {"SizeTooLarge", {"--size", "16385x1"}, "16384"},
+    {"TooManyPixels", {"--size", "16384x16384"}, "67 million at most"},
     {"SizeOverflow", {"--size", "99999999999999999999x1"}, "--size"},
     {"SizeTrailing", {"--size", "12x34x56"}, "--size"},
     {"SizeEmpty", {"--size", ""}, "--size"},

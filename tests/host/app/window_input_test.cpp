@@ -39,9 +39,12 @@ class WindowInputTest : public ::testing::Test {
   int panels_ = 0;
   int pauses_ = 0;
   int quits_ = 0;
+  std::string pressed_;
+  std::string bound_;
   WindowInput input_{nullptr,
                      navigator_,
                      {[this] { ++panels_; }, [this] { ++pauses_; }, [this] { ++quits_; },
+                      [this](const std::string& key) { return pressed_ = key, key == bound_; },
                       [this] { return panelHasInput_; }, [this] { return panelHasInput_; }}};
   navigation::Pose start_{};
 };
@@ -97,6 +100,28 @@ TEST_F(WindowInputTest, KeysCallTheirCommandsOnce) {
   EXPECT_EQ(panels_, 1);
   EXPECT_EQ(pauses_, 1);
   EXPECT_EQ(quits_, 1);
+}
+
+TEST_F(WindowInputTest, BoundKeysComeFirst) {
+  bound_ = "Shift+SPACE";
+  input_.key(GLFW_KEY_SPACE, true, GLFW_MOD_SHIFT);
+  EXPECT_EQ(pauses_, 0);
+  input_.key(GLFW_KEY_SPACE, true, 0);
+  EXPECT_EQ(pauses_, 1);
+  EXPECT_EQ(pressed_, "SPACE");
+  panelHasInput_ = true;
+  bound_ = "A";
+  input_.key(GLFW_KEY_A, true, 0);
+  EXPECT_EQ(pressed_, "SPACE") << "a panel has the keyboard";
+}
+
+TEST(KeyName, SpellsKeysAsBindingsDo) {
+  EXPECT_EQ(keyName(GLFW_KEY_H, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT), "Ctrl+Shift+H");
+  EXPECT_EQ(keyName(GLFW_KEY_7, 0), "7");
+  EXPECT_EQ(keyName(GLFW_KEY_F12, GLFW_MOD_ALT), "Alt+F12");
+  EXPECT_EQ(keyName(GLFW_KEY_KP_0, 0), "KP_0");
+  EXPECT_EQ(keyName(GLFW_KEY_PRINT_SCREEN, 0), "PRINT_SCREEN");
+  EXPECT_EQ(keyName(GLFW_KEY_LEFT_SHIFT, GLFW_MOD_SHIFT), "");
 }
 
 }  // namespace

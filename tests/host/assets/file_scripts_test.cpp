@@ -1,5 +1,10 @@
 #include "host/assets/file_scripts.h"
 
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "host/scripting/script_engine.h"
@@ -95,6 +100,75 @@ TEST_F(FileScriptsTest, WritesBelowTheCacheAndNamesTokens) {
                   "'${ASSETS}/sub') assert(openspace.readFile('${SUB}/b.txt') == 'beta')",
                   "test"));
   EXPECT_EQ(value("openspace.readFile('${CACHE}/new/file.txt')"), Value("x"));
+}
+
+/// A ZIP archive of files that are stored as they are.
+std::string zipOf(const std::vector<std::pair<std::string, std::string>>& files) {
+  const auto number = [](std::uint64_t value, int bytes) {
+    std::string text;
+    for (int i = 0; i < bytes; ++i) {
+      text += static_cast<char>(value >> (8 * i) & 0xff);
+    }
+    return text;
+  };
+  const auto checksum = [](const std::string& text) {
+    std::uint32_t sum = 0xffffffff;
+    for (const unsigned char c : text) {
+      sum ^= c;
+      for (int bit = 0; bit < 8; ++bit) {
+        sum = sum >> 1 ^ (sum & 1 ? 0xedb88320U : 0U);
+      }
+    }
+    return ~sum;
+  };
+  std::string archive;
+  std::string directory;
+  for (const auto& [name, text] : files) {
+    const std::string common = number(0, 2) + number(0, 2) + number(0, 4) + number(checksum(text), 4) +
+                               number(text.size(), 4) + number(text.size(), 4) + number(name.size(), 2) + number(0, 2);
+    directory += "PK\1\2" + number(20, 2) + number(20, 2) + common + number(0, 10) + number(archive.size(), 4) + name;
+    archive += "PK\3\4" + number(20, 2) + common + name + text;
+  }
+  const std::string end = "PK\5\6" + number(0, 4) + number(files.size(), 2) + number(files.size(), 2) +
+                          number(directory.size(), 4) + number(archive.size(), 4) + number(0, 2);
+  return archive + directory + end;
+}
+
+TEST_F(FileScriptsTest, UnpacksArchives) {
+  open_.write("cache/good.zip", zipOf({{"a.txt", "alpha"}, {"deep/er/b.txt", "beta"}, {"empty/", ""}}));
+  ASSERT_TRUE(engine_.run("openspace.unzipFile('${CACHE}/good.zip', '${CACHE}/out-of-zip', true)", "test"));
+  EXPECT_EQ(value("openspace.readFile('${CACHE}/out-of-zip/a.txt')"), Value("alpha"));
+  EXPECT_EQ(value("openspace.readFile('${CACHE}/out-of-zip/deep/er/b.txt')"), Value("beta"));
+  EXPECT_EQ(value("openspace.fileExists('${CACHE}/good.zip')"), Value(false)) << "so it was asked for";
+  tokens_.set("SYNC", open_.path() / "sync");
+  EXPECT_TRUE(engine_.run("openspace.unzipFile('${SYNC}/never-synchronised.zip', '${CACHE}/x')", "test"));
+  open_.write("cache/text.zip", "this is no archive");
+  EXPECT_FALSE(engine_.run("openspace.unzipFile('${CACHE}/text.zip', '${CACHE}/x')", "test"));
+  open_.write("cache/evil.zip", zipOf({{"../../evil.txt", "out"}}));
+  (void)engine_.run("openspace.unzipFile('${CACHE}/evil.zip', '${CACHE}/x')", "test");
+  EXPECT_FALSE(std::filesystem::exists(open_.path() / "evil.txt"));
+  EXPECT_FALSE(std::filesystem::exists(open_.path() / "cache" / "evil.txt"));
+  open_.write("cache/good.zip", zipOf({{"a.txt", "alpha"}}));
+  EXPECT_FALSE(engine_.run("openspace.unzipFile('${CACHE}/good.zip', '${ASSETS}/sub')", "test"));
+}
+
+TEST_F(FileScriptsTest, ReadsLinesAndTables) {
+  open_.write("t.csv", "name,value\r\nMoon,\"1,737\"\n\"a \"\"b\"\"\",\n");
+  EXPECT_EQ(value("openspace.readFileLines('t.csv')[2]"), Value("Moon,\"1,737\""));
+  EXPECT_EQ(value("openspace.readCSVFile('t.csv')"),
+            Value(Table{{Table{{"Moon", "1,737"}, {}}, Table{{"a \"b\"", ""}, {}}}, {}}));
+  EXPECT_EQ(value("#openspace.readCSVFile('t.csv', true)"), Value(3));
+}
+
+TEST_F(FileScriptsTest, MakesFoldersAndPictures) {
+  tokens_.set("TEMPORARY", open_.path() / "cache");
+  ASSERT_TRUE(engine_.run("openspace.createDirectory('${CACHE}/one/two')", "test"));
+  EXPECT_EQ(value("openspace.directoryExists('${CACHE}/one/two')"), Value(true));
+  EXPECT_TRUE(engine_.run("openspace.createDirectory('${ASSETS}/elsewhere')", "test")) << "it only warns";
+  EXPECT_FALSE(std::filesystem::exists(open_.path() / "elsewhere"));
+  EXPECT_EQ(value("openspace.readFile(openspace.createSingleColorImage('red', { 1, 0, 0.5 }))"),
+            Value(std::string("P6 1 1 255\n\xff\0\x80", 14)));
+  EXPECT_FALSE(engine_.run("openspace.createSingleColorImage('../red', { 1, 0, 0 })", "test"));
 }
 
 TEST_F(FileScriptsTest, MakesIdentifiers) {

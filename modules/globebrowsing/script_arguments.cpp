@@ -1,0 +1,74 @@
+#include "globebrowsing/script_arguments.h"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+/// Paths may begin with a token such as ${SYNC}; what the host does not know is left as it is.
+Value withTokensReplaced(const Host& host, const Value& table) {
+  Table replaced = *table.table();
+  for (const std::string_view key : {"FilePath", "FolderPath"}) {
+    const auto found = replaced.fields.find(key);
+    const std::string* path = found != replaced.fields.end() ? found->second.string() : nullptr;
+    if (path != nullptr && path->starts_with("${")) {
+      if (const auto whole = host.readablePath(*path)) {
+        found->second = whole->string();
+      }
+    }
+  }
+  return replaced;
+}
+
+}  // namespace
+
+Result<std::string> text(const Value& value, std::string_view argument) {
+  if (const std::string* found = value.string()) {
+    return *found;
+  }
+  return failure(fmt::format("{} must be a string, found {}", argument, kindName(value.kind())));
+}
+
+Result<std::string> identifierOf(const Value& value, std::string_view argument) {
+  const Value* named = value.isTable() ? value.find("Identifier") : &value;
+  return text(named != nullptr ? *named : Value(), argument);
+}
+
+Result<double> number(const Value& value, std::string_view argument) {
+  const auto found = value.number();
+  if (!found || !std::isfinite(*found)) {
+    return failure(fmt::format("{} must be a finite number, found {}", argument, kindName(value.kind())));
+  }
+  return *found;
+}
+
+Result<RenderableGlobe*> globe(Host& host, const Value& node) {
+  return text(node, "globe").and_then([&](const std::string& identifier) -> Result<RenderableGlobe*> {
+    if (auto* found = dynamic_cast<RenderableGlobe*>(host.renderable(identifier))) {
+      return found;
+    }
+    return failure(fmt::format("there is no globe \"{}\"", identifier), {},
+                   "openspace.globebrowsing.globes() lists those there are");
+  });
+}
+
+ScriptResult none(const Result<void>& done) {
+  return done ? ScriptResult(std::vector<Value>{}) : tl::make_unexpected(done.error());
+}
+
+Result<void> addLayerFromScript(Host& host, const Value& node, const std::string& group, const Value& table) {
+  if (!table.isTable()) {
+    return failure(fmt::format("the layer must be a table, found {}", kindName(table.kind())));
+  }
+  return globe(host, node).and_then([&](RenderableGlobe* found) {
+    Host::ScriptPlace place = host.scriptPlace();
+    return found->addLayer(
+        group, {withTokensReplaced(host, table), std::move(place.where), "addLayer " + group, std::move(place.folder)});
+  });
+}
+
+}  // namespace meridian::globebrowsing
