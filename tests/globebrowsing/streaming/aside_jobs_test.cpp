@@ -98,9 +98,11 @@ class AsideJobs : public testing::Test {
   }
   template <class Ask>
   void frame(Ask&& asks) {
+    Gate gate(pool_);  // no job begins before all have been asked for
     streamer_.beginFrame();
     asks();
     streamer_.endFrame();
+    gate.open();
     pool_.drain();
   }
 
