@@ -329,7 +329,7 @@ TEST(AsideJobsStress, ManyThreadsDeliverWhileAFlightChangesItsMind) {
     }
   }
   EXPECT_GE(statistics.tiles.loaded, 40U);
-  EXPECT_GT(statistics.tiles.cancelled, 100U);
+  EXPECT_EQ(statistics.tiles.requested, statistics.tiles.loaded + statistics.tiles.cancelled);
   EXPECT_TRUE(elsewhere.asking().empty());
 }
 
