@@ -33,6 +33,8 @@ Result<SourceTilePointer> decodeGuarded(const TileDecoder& decode, const TileSer
     return decode(service, kind, fetched);
   } catch (const std::exception& exception) {
     return failure(std::string("decoding threw: ") + exception.what());
+  } catch (...) {
+    return failure("decoding threw something that is no exception");
   }
 }
 
