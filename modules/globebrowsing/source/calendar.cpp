@@ -171,8 +171,10 @@ bool readZone(Reader& reader, Parts& parts, CalendarStyle& style) {
 
 bool isOfCalendar(const Parts& parts) {
   const bool isMidnight = parts.hour == 24 && parts.minute == 0 && parts.second == 0;
-  return parts.month >= 1 && parts.month <= 12 && parts.day >= 1 && parts.day <= daysOfMonth(parts.year, parts.month) &&
-         (parts.hour <= 23 || isMidnight) && parts.minute <= 59 && parts.second <= 60;
+  constexpr std::int64_t furthestYear = 20'000;
+  return std::abs(parts.year) <= furthestYear && parts.month >= 1 && parts.month <= 12 && parts.day >= 1 &&
+         parts.day <= daysOfMonth(parts.year, parts.month) && (parts.hour <= 23 || isMidnight) && parts.minute <= 59 &&
+         parts.second <= 60;
 }
 
 }  // namespace
@@ -255,6 +257,9 @@ std::optional<CalendarPeriod> readPeriod(std::string_view text) {
       return std::nullopt;
     }
     (isMonths ? period.months : period.milliseconds) += std::llround(isMonths ? months : *value * length);
+    if (period.months > 240'000 || period.milliseconds > longest) {
+      return std::nullopt;
+    }
     hasAny = true;
   }
   return hasAny ? std::optional(period) : std::nullopt;

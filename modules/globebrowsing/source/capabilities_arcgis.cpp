@@ -31,9 +31,11 @@ std::string stringAt(const Json& object, const char* key) {
 std::optional<double> numberAt(const Json& object, const char* key) {
   const Json& value = at(object, key);
   if (value.is_string()) {
-    return number(value.get<std::string>());
+    const auto read = number(value.get<std::string>());
+    return read && std::abs(*read) <= 1e18 ? read : std::nullopt;
   }
-  if (!value.is_number() || !std::isfinite(value.get<double>())) {
+  constexpr double most = 1e18;  // what is larger is no count, and no coordinate either
+  if (!value.is_number() || !(std::abs(value.get<double>()) <= most)) {
     return std::nullopt;
   }
   return value.get<double>();

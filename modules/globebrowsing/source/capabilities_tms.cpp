@@ -85,7 +85,7 @@ Result<TileMapPlace> readPlace(const XmlDocument& document, const std::string& p
 std::optional<TileMatrix> readMatrix(const XmlDocument& document, const pugi::xml_node& node,
                                      const TileMapPlace& place) {
   const auto pixel = number(attribute(node, "units-per-pixel"));
-  if (!pixel || *pixel <= 0) {
+  if (!pixel || !(*pixel > 1e-12)) {
     return std::nullopt;
   }
   TileMatrix matrix;
@@ -101,8 +101,9 @@ std::optional<TileMatrix> readMatrix(const XmlDocument& document, const pugi::xm
   matrix.pixelHeight = *pixel;
   matrix.left = place.originX;
   const double height = matrix.tileHeight * *pixel;
-  const auto rows = static_cast<std::int64_t>(std::ceil((place.box.north - place.originY) / height - 1e-6));
-  const std::int64_t rowCount = std::max<std::int64_t>(rows, 1);
+  constexpr double mostRows = 1e12;
+  const double rows = std::clamp(std::ceil((place.box.north - place.originY) / height - 1e-6), 1.0, mostRows);
+  const auto rowCount = static_cast<std::int64_t>(rows);
   matrix.top = place.countsFromNorth ? place.originY : place.originY + static_cast<double>(rowCount) * height;
   constexpr std::int64_t most = std::int64_t{1} << 40;
   matrix.firstColumn = integer(attribute(node, "mincol")).value_or(0);

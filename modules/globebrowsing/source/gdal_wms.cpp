@@ -110,8 +110,13 @@ Result<GdalWindow> readWindow(const XmlDocument& document, const GdalMiniDriver&
     if (!hasLevel) {
       return failure("the DataWindow has neither SizeX and SizeY nor TileLevel", place);
     }
-    window.width = countX * window.blockWidth * (std::int64_t{1} << level);
-    window.height = countY * window.blockHeight * (std::int64_t{1} << level);
+    // In double first: the product may not fit, and then is no raster.
+    const auto pixels = [&](std::int64_t count, int block) {
+      const double product = std::ldexp(static_cast<double>(count) * block, level);
+      return product <= static_cast<double>(largestRaster) ? static_cast<std::int64_t>(product) : 0;
+    };
+    window.width = pixels(countX, window.blockWidth);
+    window.height = pixels(countY, window.blockHeight);
   }
   if (window.blockWidth < 1 || window.blockHeight < 1 || window.width < 1 || window.height < 1 ||
       window.width > largestRaster || window.height > largestRaster) {

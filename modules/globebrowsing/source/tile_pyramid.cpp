@@ -74,8 +74,9 @@ std::vector<TileMatrix> layOutPyramid(const MapCrs& crs, const Pyramid& pyramid)
 
 Result<void> setMatrices(TileService& service, std::vector<TileMatrix> matrices, const Extent& extent) {
   std::erase_if(matrices, [&](TileMatrix& matrix) {
-    return !(matrix.pixelWidth > 0.0) || !(matrix.pixelHeight > 0.0) || matrix.tileWidth < 1 || matrix.tileHeight < 1 ||
-           !clip(matrix, extent);
+    return !std::isfinite(matrix.left) || !std::isfinite(matrix.top) || !std::isfinite(matrix.pixelWidth) ||
+           !std::isfinite(matrix.pixelHeight) || !(matrix.pixelWidth > 0.0) || !(matrix.pixelHeight > 0.0) ||
+           matrix.tileWidth < 1 || matrix.tileHeight < 1 || !clip(matrix, extent);
   });
   if (matrices.empty()) {
     return failure("the service has no tiles within its extent", service.where, "check the extent and the levels");

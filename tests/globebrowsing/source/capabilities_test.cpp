@@ -340,6 +340,7 @@ TEST(Ledger, NoTileIsAskedForThatTheWmtsForbids) {
 }
 
 TEST(Ledger, NoMapIsAskedForThatTheWmsForbids) {
+  MERIDIAN_NEEDS(sharedData("capabilities"));
   for (const auto& entry : std::filesystem::directory_iterator(sharedData("capabilities"))) {
     const std::string file = entry.path().filename().string();
     if (!file.starts_with("wms1")) {
