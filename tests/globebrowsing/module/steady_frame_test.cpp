@@ -37,7 +37,17 @@ TEST_F(SteadyFrameTest, AllocatesNothing) {
         return 4000.0 * std::sin(0.3 * longitude) * std::cos(0.2 * latitude);
       },
       1, GDT_Float32, 1024);
-  addGlobe({{"ColorLayers", listOf({fileLayer("A", colours), fileLayer("B", colours, {{"Opacity", 0.5}})})},
+  const Value series =
+      tableOf({{"Identifier", "T"},
+               {"Enabled", true},
+               {"Opacity", 0.5},
+               {"Type", "TemporalTileProvider"},
+               {"Prototyped", tableOf({{"Time", tableOf({{"Start", "2000-01-01"}, {"End", "2001-01-01"}})},
+                                       {"TemporalResolution", "1M"},
+                                       {"TimeFormat", "YYYY"},
+                                       {"Prototype", (folder_ / "s${OpenSpaceTimeId}.tif").string()}})}});
+  std::filesystem::copy_file(colours, folder_ / "s2000.tif");
+  addGlobe({{"ColorLayers", listOf({fileLayer("A", colours), fileLayer("B", colours, {{"Opacity", 0.5}}), series})},
             {"HeightLayers", listOf({fileLayer("H", heights)})},
             {"NightLayers", listOf({fileLayer("N", colours)})},
             {"Overlays", listOf({solidLayer("O", {1, 1, 0}, {{"Opacity", 0.1}})})}},
