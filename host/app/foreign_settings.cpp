@@ -6,8 +6,11 @@ ForeignSettings::ForeignSettings() {
   dashboard.addProperty(startPosition);
   webGui.addProperty(serverEnabled);
   webGui.addProperty(serverEntryPoint);
-  exoplanets.addProperty(exoplanetsFolder);
-  exoplanets.addProperty(starTexture);
+  for (const char* name : {"DataFolder", "BvColormap", "StarTexture", "StarGlareTexture", "NoDataTexture",
+                           "OrbitDiscTexture", "HabitableZoneTexture"}) {
+    files.push_back(std::make_unique<StringProperty>(Property::Description{name, name, "Without effect"}));
+    exoplanets.addProperty(*files.back());
+  }
 }
 
 }  // namespace meridian::app

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "host/api/property.h"
 #include "host/api/property_owner.h"
 
@@ -17,8 +20,7 @@ struct ForeignSettings {
   StringProperty serverEntryPoint{{"ServerProcessEntryPoint", "Entry point", "Without effect"}, ""};
 
   PropertyOwner exoplanets{"Exoplanets"};
-  StringProperty exoplanetsFolder{{"DataFolder", "Data folder", "Without effect"}, ""};
-  StringProperty starTexture{{"StarTexture", "Texture of stars", "Without effect"}, ""};
+  std::vector<std::unique_ptr<StringProperty>> files;  ///< of exoplanets: paths
 };
 
 }  // namespace meridian::app

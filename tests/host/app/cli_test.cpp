@@ -177,6 +177,69 @@ TEST_F(CommandLine, ValidateCountsAndEndsWithThree) {
   EXPECT_THAT(missing.errors, HasSubstr("nowhere"));
 }
 
+TEST_F(CommandLine, ValidatesAssetsOfAllDialects) {
+  const Outcome outcome = run("--validate '" MERIDIAN_SOURCE_FOLDER "/tests/host/app/dialects/assets'");
+  if (outcome.errors.find("globes need the module") != std::string::npos) {
+    GTEST_SKIP() << "built without the module that brings globes";
+  }
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  // Current: 11 layers of its own, 5 added, 2 of a patch; middle: 11; old: 6.
+  EXPECT_THAT(outcome.out, HasSubstr("assets 6 ok 0 failed; globes 4; layers 35 usable "));
+  EXPECT_THAT(outcome.errors, HasSubstr("CurrentGlobe ColorLayers.Local is usable"));
+  EXPECT_THAT(outcome.errors, HasSubstr("MiddleGlobe ColorLayers.Map is usable"));
+  EXPECT_THAT(outcome.errors, HasSubstr("OldGlobe Overlays.Lines is usable"));
+  EXPECT_THAT(outcome.errors, HasSubstr("OldGlobe ColorLayers.Grey is usable"));
+  EXPECT_THAT(outcome.errors, HasSubstr("CurrentGlobe ColorLayers.Whole is not usable"));
+  EXPECT_THAT(outcome.errors, HasSubstr("no videos are played"));
+  EXPECT_THAT(outcome.errors, HasSubstr("unknown key Enable, did you mean Enabled"));
+  EXPECT_THAT(outcome.errors, Not(HasSubstr("warning not available:"))) << "nothing asserted by the assets failed";
+}
+
+TEST_F(CommandLine, ShowsProfiles) {
+  write("data/assets/base.asset", R"(
+    local node = { Identifier = "Place", BoundingSphere = 1000.0 }
+    asset.onInitialize(function() openspace.addSceneGraphNode(node) end)
+  )");
+  const std::string profile = R"json({ "version": { "major": 1, "minor": 5 }, "assets": [ "base", "missing" ],
+    "camera": { "type": "goToNode", "anchor": "Place", "height": 500 },
+    "time": { "type": "absolute", "value": "2020 JAN 02 03:04:05", "is_paused": true },
+    "properties": [ { "type": "setPropertyValueSingle", "name": "RenderEngine.VerticalSync", "value": "false" } ],
+    "mark_nodes": [ "Place" ],
+    "actions": [ { "identifier": "hello", "name": "", "documentation": "", "gui_path": "", "is_local": false,
+                   "script": "openspace.printInfo('hello from an action')"
+} ],
+    "keybindings": [ { "key": "Ctrl+H", "action": "hello" } ],
+    "modules": [ { "name": "Nothing", "loadedInstruction": "error('loaded')",
+                   "notLoadedInstruction": "openspace.printInfo('not loaded')" } ],
+    "additional_scripts": [ "openspace.action.triggerAction('hello')",
+      "openspace.printInfo(openspace.time.UTC() .. ' ' .. tostring(openspace.time.isPaused()))",
+      "openspace.printInfo('far ' .. openspace.navigation.distanceToFocus())",
+      "openspace.printInfo('sync ' .. tostring(openspace.propertyValue('RenderEngine.VerticalSync')))",
+      "openspace.printInfo(openspace.keyBindings('Ctrl+H')[1])" ])json";
+  write("data/profiles/p.profile", profile + "}");
+  const Outcome outcome = run("data/profiles/p.profile --headless --size 8x8 --output picture.png");
+  EXPECT_EQ(outcome.code, 1) << "an asset is missing";
+  EXPECT_TRUE(fs::exists(in("picture.png"))) << outcome.errors;
+  for (const char* line : {"data/assets/missing.asset", "2020-01-02T03:04:05.000 true", "far 1500", "sync false",
+                           "info hello", "not loaded", "hello from an action"}) {
+    EXPECT_THAT(outcome.errors, HasSubstr(line));
+  }
+  write("data/profiles/bad.profile", profile + R"(, "nodes": [] })");
+  const Outcome bad = run("data/profiles/bad.profile --headless --size 8x8 --output no.png");
+  EXPECT_EQ(bad.code, 1);
+  EXPECT_THAT(bad.errors, HasSubstr("bad.profile: nodes: unknown key nodes"));
+  EXPECT_FALSE(fs::exists(in("no.png")));
+  const Outcome checked = run("--validate data/profiles/p.profile");
+  EXPECT_EQ(checked.code, 3);
+  EXPECT_EQ(checked.out, "assets 1 ok 1 failed; globes 0; layers 0 usable 0\n");
+}
+
+TEST_F(CommandLine, RefusesPicturesThatAreTooLarge) {
+  const Outcome outcome = run("--headless --size 16384x16384 --output picture.png");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.errors, HasSubstr("million pixels"));
+}
+
 TEST_F(CommandLine, WithoutADisplayItSaysSo) {
   emptyScene();
   const Outcome window = run("empty.asset");
