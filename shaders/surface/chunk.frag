@@ -15,26 +15,27 @@ layout(location = 0) out vec4 colour;
 
 void main() {
     // Without any composite the grey that composition starts from.
-    vec3 lit = layers.x < 0.0 ? vec3(0.3) : texture(composites, vec3(baseAndNormals.xy, layers.x)).rgb;
+    float base = baseNormalsScale.x;
+    vec3 lit = base < 0.0 ? vec3(0.3) : texture(composites, vec3(baseAndNormals.xy, base)).rgb;
 #if SHADING
     vec3 normal = vertical;
 #if ACCURATE_NORMALS
-    vec3 texel = texture(normalOffsets, vec3(baseAndNormals.zw, layers.w)).xyz;
-    normal += (texel * (255.0 / 127.0) - 128.0 / 127.0) * normalScale;
+    vec3 texel = texture(normalOffsets, vec3(baseAndNormals.zw, baseNormalsScale.y)).xyz;
+    normal += (texel * (255.0 / 127.0) - 128.0 / 127.0) * baseNormalsScale.z;
 #endif
     normal = normalize(normal);
     lit *= min(view.ambient + max(dot(normal, view.lightDirection), 0.0), 1.0);
 #if NIGHT
-    if (layers.y >= 0.0) {
-        vec4 night = texture(composites, vec3(nightAndOverlay.xy, layers.y));
+    if (nightOverlayLayers.x >= 0.0) {
+        vec4 night = texture(composites, vec3(nightAndOverlay.xy, nightOverlayLayers.x));
         float darkness = clamp(-3.0 * dot(normalize(normalize(vertical) - 0.2 * view.lightDirection), view.lightDirection), 0.0, 1.0);
         lit = mix(lit, night.rgb, night.a * darkness * max(night.r, max(night.g, night.b)));
     }
 #endif
 #endif
 #if OVERLAY
-    if (layers.z >= 0.0) {
-        vec4 overlay = texture(composites, vec3(nightAndOverlay.zw, layers.z));
+    if (nightOverlayLayers.y >= 0.0) {
+        vec4 overlay = texture(composites, vec3(nightAndOverlay.zw, nightOverlayLayers.y));
         lit = mix(lit, overlay.rgb, overlay.a);
     }
 #endif

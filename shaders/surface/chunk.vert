@@ -29,14 +29,15 @@ void main() {
     vec4 base = chunks[gl_DrawIDARB].base;
     vec4 normals = chunks[gl_DrawIDARB].normals;
     baseAndNormals = vec4(base.xy + base.zw * uv, normals.xy + normals.zw * uv);
-    layers = chunks[gl_DrawIDARB].layers;
+    vec4 layers = chunks[gl_DrawIDARB].layers;
+    baseNormalsScale = vec3(layers.x, layers.w, chunks[gl_DrawIDARB].normalScale);
 #if SHADING
     vertical = ellipsoidNormal;
-    normalScale = chunks[gl_DrawIDARB].normalScale;
 #endif
 #if NIGHT || OVERLAY
     vec4 night = chunks[gl_DrawIDARB].night;
     vec4 overlay = chunks[gl_DrawIDARB].overlay;
+    nightOverlayLayers = layers.yz;
     nightAndOverlay = vec4(night.xy + night.zw * uv, overlay.xy + overlay.zw * uv);
 #endif
 #if EDGES

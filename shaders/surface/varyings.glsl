@@ -1,12 +1,13 @@
-// What vertices hand to fragments; VARYING is `out` for those and `in` for these.
-layout(location = 0) VARYING vec4 baseAndNormals;   // texture coordinates
-layout(location = 1) flat VARYING vec4 layers;      // as Chunk.layers
+// What vertices hand to fragments; VARYING is `out` for those and `in` for these. As few as possible: a software
+// renderer sets each up for every triangle.
+layout(location = 0) VARYING vec4 baseAndNormals;         // texture coordinates
+layout(location = 1) flat VARYING vec3 baseNormalsScale;  // layers of base composite and normals; Chunk.normalScale
 #if SHADING
 layout(location = 2) VARYING vec3 vertical;
-layout(location = 3) flat VARYING float normalScale;
 #endif
 #if NIGHT || OVERLAY
-layout(location = 4) VARYING vec4 nightAndOverlay;  // texture coordinates
+layout(location = 3) VARYING vec4 nightAndOverlay;        // texture coordinates
+layout(location = 4) flat VARYING vec2 nightOverlayLayers;
 #endif
 #if EDGES
 layout(location = 5) VARYING vec2 unitSquare;

@@ -18,13 +18,13 @@ namespace meridian::globebrowsing {
 namespace {
 
 constexpr int finestStep = 4;
-/// A tile that this step does not bring within the error splits: large tiles at 8 segments a side, because beyond the
-/// horizon they are culled whole or not at all; others at 16, because a chunk costs something too. The steps left are
-/// for what stands in for tiles that load. (Small tiles fit uneven relief better than dense ones: where one peak asks
-/// for density, only its own tile gets it.)
+/// A tile that this step does not bring within the error splits: large tiles at 4 segments a side, because beyond the
+/// horizon they are culled whole or not at all; others at 8, because small tiles fit uneven relief better than dense
+/// ones: where one peak asks for density, only its own tile gets it, and a chunk costs less than the triangles that it
+/// saves. The steps left are for what stands in for tiles that load.
 constexpr int splitStep(int level) {
   constexpr int firstOrdinaryLevel = 4;
-  return level < firstOrdinaryLevel ? 1 : 3;
+  return level < firstOrdinaryLevel ? 1 : 2;
 }
 /// A float holds 24 bits: a corner patch's edge times this is the error of a vertex along it.
 constexpr double floatPrecision = 0x1p-23;
