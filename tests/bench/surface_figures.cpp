@@ -56,6 +56,8 @@ double errorOf(const SelectedChunk& chunk, const ChunkSurface& surface, const Ti
   };
   double largest = 0.0;
   for (int row = 0; row < fine; row += down) {
+    const bool atNorthPole = surface.columns() == chunk_grid::Columns::HalfToNorthPole && row == 0;
+    const bool atSouthPole = surface.columns() == chunk_grid::Columns::HalfToSouthPole && row + down == fine;
     for (int column = 0; column < fine; column += across) {
       const glm::dvec3 nw = drawnAt(column, row);
       const glm::dvec3 ne = drawnAt(column + across, row);
@@ -65,7 +67,10 @@ double errorOf(const SelectedChunk& chunk, const ChunkSurface& surface, const Ti
         for (int i = 0; i <= across; ++i) {
           const double a = static_cast<double>(i) / across;
           const double b = static_cast<double>(j) / down;
-          const glm::dvec3 drawn = nw + (a <= b ? (sw - nw) * b + (se - sw) * a : (ne - nw) * a + (se - ne) * b);
+          const glm::dvec3 drawn = atNorthPole   ? nw + (sw - nw + (se - sw) * a) * b
+                                   : atSouthPole ? sw + (nw - sw + (ne - nw) * a) * (1.0 - b)
+                                   : a <= b      ? nw + (sw - nw) * b + (se - sw) * a
+                                                 : nw + (ne - nw) * a + (se - ne) * b;
           const GeodeticPosition place = tiling.geodetic(
               chunk.index, {static_cast<double>(column + i) / fine, static_cast<double>(row + j) / fine});
           const glm::dvec3 vertical = tiling.ellipsoid().normal(place.latitude, place.longitude);

@@ -53,7 +53,13 @@ std::vector<std::uint16_t> indices(int step, Columns columns, unsigned edges) {
       const std::uint16_t northEast = gridVertex(column + across, row);
       const std::uint16_t southWest = gridVertex(column, row + down);
       const std::uint16_t southEast = gridVertex(column + across, row + down);
-      out.insert(out.end(), {northWest, southWest, southEast, northWest, southEast, northEast});
+      if (columns == Columns::HalfToNorthPole && row == 0) {
+        out.insert(out.end(), {gridVertex(column + across / 2, row), southWest, southEast});
+      } else if (columns == Columns::HalfToSouthPole && row + down == segments) {
+        out.insert(out.end(), {northWest, gridVertex(column + across / 2, row + down), northEast});
+      } else {
+        out.insert(out.end(), {northWest, southWest, southEast, northWest, southEast, northEast});
+      }
     }
   }
   for (int edge = 0; edge < 4; ++edge) {

@@ -107,7 +107,7 @@ void ChunkSurface::setTaper(const Nodes& all) {
   constexpr double toAPoint = 1.0 - 1e-6;
   const double high = glm::distance(corners_[0], corners_[2]);
   if (std::abs(taper_) > toAPoint && wider < 0.5 * high) {
-    columns_ = chunk_grid::Columns::Half;
+    columns_ = taper_ > 0.0 ? chunk_grid::Columns::HalfToNorthPole : chunk_grid::Columns::HalfToSouthPole;
   }
 }
 
@@ -189,6 +189,9 @@ double ChunkSurface::errorAt(const Nodes& all, int step) const {
   };
   double largest = 0.0;
   for (int row = 0; row < nodes - 1; row += down) {
+    // There a cell is one triangle.
+    const bool atNorthPole = columns_ == chunk_grid::Columns::HalfToNorthPole && row == 0;
+    const bool atSouthPole = columns_ == chunk_grid::Columns::HalfToSouthPole && row + down == nodes - 1;
     for (int column = 0; column < nodes - 1; column += across) {
       const glm::dvec3 northWest = vertex(column, row);
       const glm::dvec3 southWest = vertex(column, row + down);
@@ -202,7 +205,10 @@ double ChunkSurface::errorAt(const Nodes& all, int step) const {
         for (int i = 0; i <= across; ++i) {
           const double a = static_cast<double>(i) / across;
           const double b = static_cast<double>(j) / down;
-          const glm::dvec3 drawn = northWest + (a <= b ? west * b + south * a : north * a + east * b);
+          const glm::dvec3 drawn = atNorthPole   ? northWest + (west + south * a) * b
+                                   : atSouthPole ? southWest + (north * a - west) * (1.0 - b)
+                                   : a <= b      ? northWest + west * b + south * a
+                                                 : northWest + north * a + east * b;
           const std::size_t node = Nodes::at(column + i, row + j);
           largest = std::max(largest, std::abs(glm::dot(all.positions[node] - drawn, all.normals[node])));
         }
