@@ -16,8 +16,8 @@ struct Eye {
   double nearPlane = 0.1;            ///< metres
   double verticalFieldOfView = 0.9;  ///< radians
 
-  /// The unit direction through a pixel's middle; rows count from the top.
-  [[nodiscard]] glm::dvec3 through(int column, int row) const;
+  /// The unit direction through a pixel's middle, or between those of several; rows count from the top.
+  [[nodiscard]] glm::dvec3 through(double column, double row) const;
 };
 
 }  // namespace meridian::globebrowsing::test

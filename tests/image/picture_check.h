@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,8 @@ inline constexpr glm::ivec3 background{255, 0, 255};
 struct Expected {
   std::vector<std::uint8_t> covered;  ///< per pixel: 1 where the ray meets the world
   std::vector<glm::vec3> colours;     ///< of what it meets
+  /// Of what a ray between the middles of pixels meets: colours may peak there.
+  std::function<std::optional<glm::vec3>(double column, double row)> colourAt;
 };
 [[nodiscard]] Expected expectedPicture(const SmoothWorld& world, const Eye& eye);
 
@@ -47,9 +51,10 @@ struct Verdict {
 };
 
 /// How far a drawn colour may leave the range of the expected colours of its pixel and those around, in levels of 255,
-/// beside a tenth of that range. The range allows for the half pixel by which geometry may be off; the rest is for
-/// 8-bit rasters and composites and for texture filtering, which near the poles of a geodetic tiling, where texels are
-/// narrow, smooths along meridians as far as it must along parallels.
+/// beside a tenth of that range. The range allows for the half pixel by which geometry may be off, and is looked at
+/// four times as closely where the pixels' middles alone do not explain a colour; the rest is for 8-bit rasters and
+/// composites and for texture filtering, which near the poles of a geodetic tiling, where texels are narrow, smooths
+/// along meridians as far as it must along parallels.
 inline constexpr double colourTolerance = 6.0;
 /// Pixels from the outline where both are right.
 inline constexpr int outlineMargin = 2;

@@ -28,7 +28,7 @@ constexpr double skirtFlare = 1.5;
 /// Tiles that touch a pole taper to nothing; in the others the wider edge is at most about twice the narrower.
 constexpr double polarTaper = 0.9;
 
-double texelsPerPixel(int texels, const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
+double texelsPerPixel(double texels, const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
   const double meridian = glm::distance(surface.corners()[0], surface.corners()[2]);
   return texels * chunk.distance / (meridian * view.pixelsPerRadian);
 }
@@ -36,8 +36,9 @@ double texelsPerPixel(int texels, const ChunkSurface& surface, const SelectedChu
 /// Whether a chunk is sampled as polar tiles are. One that is shown much smaller than its composite needs all levels.
 bool isPolar(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
   constexpr double mostTexelsPerPixel = 3.0;
-  return std::abs(surface.taper()) > polarTaper &&
-         texelsPerPixel(colourLayout.interior, surface, chunk, view) < mostTexelsPerPixel;
+  // It may draw an ancestor's composite, of which it is a part.
+  const double texels = std::ldexp(colourLayout.interior, chunk.colourLevel - chunk.index.level);
+  return std::abs(surface.taper()) > polarTaper && texelsPerPixel(texels, surface, chunk, view) < mostTexelsPerPixel;
 }
 
 /// A camera that is not a number never reaches the GPU.
