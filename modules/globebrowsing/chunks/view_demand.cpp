@@ -89,6 +89,7 @@ ErrorScale PreparedViews::errorScale(const ChunkBounds& bounds, const PreparedVi
     return scale;
   }
   constexpr double betweenPoints = 1.02;
+  double verticalSquared = 0.0;
   for (std::size_t i = 0; i < bounds.points.size(); ++i) {
     const glm::dvec3 towards = view.position - bounds.points[i];
     const double inverse = 1.0 / glm::length(towards);
@@ -96,8 +97,9 @@ ErrorScale PreparedViews::errorScale(const ChunkBounds& bounds, const PreparedVi
     const double offAxis = std::max(view.leastCosine, -glm::dot(towards, view.forward) * inverse);
     const double here = betweenPoints * view.pixelsPerRadian * inverse / (offAxis * offAxis);
     scale.along = std::max(scale.along, here);
-    scale.vertical = std::max(scale.vertical, here * std::sqrt(std::max(0.0, 1.0 - cosine * cosine)));
+    verticalSquared = std::max(verticalSquared, here * here * (1.0 - cosine * cosine));
   }
+  scale.vertical = std::sqrt(verticalSquared);
   return scale;
 }
 
