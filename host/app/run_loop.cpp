@@ -78,13 +78,13 @@ Result<void> RunLoop::frame() {
   return writePicture();
 }
 
-Result<void> RunLoop::drawOnce(Clock::time_point begin, double deltaSeconds) {
+Result<void> RunLoop::drawOnce(Clock::time_point begin, double deltaSeconds, bool isDrawn) {
   Statistics::Frame& figures = parts_.application.statistics().frame;
   figures = {};
   SceneRenderer& renderer = parts_.renderer;
   renderer.beginFrame();
   const SceneRenderer::Moment moment{parts_.application.clock().time(), deltaSeconds, parts_.session.wallSeconds(),
-                                     drawings_++};
+                                     drawings_++, isDrawn};
   const graphics::RenderTarget::Shape shape{pictureSize(), parts_.application.renderSettings().antialiasing.get()};
   if (auto drawn = renderer.draw(moment, parts_.application.camera(), shape); !drawn) {
     return drawn;
@@ -124,17 +124,26 @@ Result<void> RunLoop::drawUntilSettled(Clock::time_point begin) {
   auto& figures = parts_.application.statistics().settled;
   const auto start = Clock::now();
   Settled settled = parts_.renderer.settled();
+  // Without a window nobody sees what is not complete, and a software renderer would draw it with the cores that load.
+  const bool isSeen = parts_.window != nullptr;
+  bool isPending = false;
   // Where the ground is shows as it loads: a camera that was put below it is outside in the picture.
   while ((parts_.session.keepClear() || !settled.complete) && !isStopped() &&
          millisecondsSince(start) < 1000.0 * *options_.settleSeconds) {
     std::this_thread::sleep_for(settlePause);
-    if (parts_.window != nullptr) {
+    if (isSeen) {
       graphics::WindowContext::pollEvents();
     }
+    if (auto drawn = drawOnce(Clock::now(), 0.0, isSeen); !drawn) {
+      return drawn;
+    }
+    isPending = !isSeen;
+    settled = parts_.renderer.settled();
+  }
+  if (isPending) {
     if (auto drawn = drawOnce(Clock::now(), 0.0); !drawn) {
       return drawn;
     }
-    settled = parts_.renderer.settled();
   }
   figures.waitMs += millisecondsSince(start);
   if (settled.complete) {

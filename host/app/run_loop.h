@@ -44,7 +44,7 @@ class RunLoop {
   using Clock = std::chrono::steady_clock;
 
   [[nodiscard]] Result<void> frame();
-  [[nodiscard]] Result<void> drawOnce(Clock::time_point begin, double deltaSeconds);
+  [[nodiscard]] Result<void> drawOnce(Clock::time_point begin, double deltaSeconds, bool isDrawn = true);
   [[nodiscard]] Result<void> drawUntilSettled(Clock::time_point begin);
   [[nodiscard]] Result<void> writePicture();
   [[nodiscard]] glm::ivec2 pictureSize() const;

@@ -79,10 +79,12 @@ Result<void> SceneRenderer::draw(const Moment& moment, const navigation::Camera&
   }
   takeNewRenderables();
 
-  timer_.begin();
-  // A software renderer starts on what was submitted when it is told to: it clears while scenes are selected.
-  target_.clear({0.0F, 0.0F, 0.0F, 1.0F});
-  glFlush();
+  if (moment.isDrawn) {
+    timer_.begin();
+    // A software renderer starts on what was submitted when it is told to: it clears while scenes are selected.
+    target_.clear({0.0F, 0.0F, 0.0F, 1.0F});
+    glFlush();
+  }
 
   FrameContext frame;
   frame.time = moment.time;
@@ -102,9 +104,11 @@ Result<void> SceneRenderer::draw(const Moment& moment, const navigation::Camera&
     order_.push_back(&item);
   }
 
-  target_.bind();
-  drawItems(frame);
-  timer_.end();
+  if (moment.isDrawn) {
+    target_.bind();
+    drawItems(frame);
+    timer_.end();
+  }
   return {};
 }
 

@@ -34,6 +34,8 @@ class SceneRenderer {
     double deltaSeconds = 0.0;
     double wallSeconds = 0.0;
     std::uint64_t number = 0;
+    /// False: everything is brought up to date, but not drawn.
+    bool isDrawn = true;
   };
 
   /// Errors: no second context, no such render target.
