@@ -46,7 +46,8 @@ std::vector<std::uint16_t> indices(int step, Columns columns, unsigned edges) {
   const int down = segments / segmentsAt(step);
   const int across = segments / columnsAt(step, columns);
   std::vector<std::uint16_t> out;
-  out.reserve(static_cast<std::size_t>(gridIndexCount(step, columns) + 4 * 6 * segmentsAt(step)));
+  const int most = gridIndexCount(step, columns) + 4 * 6 * segmentsAt(step);
+  out.reserve(static_cast<std::size_t>(most));
   for (int row = 0; row < segments; row += down) {
     for (int column = 0; column < segments; column += across) {
       const std::uint16_t northWest = gridVertex(column, row);
