@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -26,6 +27,9 @@ using ProviderPointer = std::shared_ptr<TileProvider>;
 
 /// The first complaint of any.
 [[nodiscard]] Result<void> checkAll(std::span<const ProviderPointer> providers);
+/// Prepares them for that, one after the other, as TileProvider::prepare.
+[[nodiscard]] bool prepareAll(std::span<const ProviderPointer> providers, bool onlySteps,
+                              const std::function<void()>& wake);
 /// Opens them (`onlySteps`: those that have steps), one after the other. Some may fail, which is logged; all failing is
 /// an error.
 [[nodiscard]] Result<void> openAll(std::span<const ProviderPointer> providers, bool onlySteps);

@@ -61,6 +61,9 @@ class SourceTileStore {
   };
   [[nodiscard]] std::unique_ptr<Want> want(Request request);
 
+  /// For what else a service has to be asked.
+  [[nodiscard]] const std::shared_ptr<Fetcher>& fetcher() const;
+
   void setBudget(std::size_t bytes);
   /// Of all decoded tiles.
   [[nodiscard]] std::size_t bytes() const;

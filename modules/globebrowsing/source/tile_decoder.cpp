@@ -4,8 +4,11 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <memory>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -221,6 +224,31 @@ Result<HeightTile> decodeHeights(std::span<const std::uint8_t> bytes, const Tile
     return tl::make_unexpected(std::move(fits.error()));
   }
   return tile;
+}
+
+Result<SourceTilePointer> decodeTile(const TileService& service, std::size_t matrix, PixelKind kind,
+                                     const Fetched& fetched) {
+  const auto published = [](auto& decoded, auto&& pixels) -> SourceTilePointer {
+    if (decoded.isEmpty()) {
+      return nullptr;
+    }
+    auto tile = std::make_shared<SourceTile>();
+    tile->width = decoded.width;
+    tile->height = decoded.height;
+    pixels(*tile);
+    return tile;
+  };
+  if (kind == PixelKind::Heights) {
+    return decodeHeights(*fetched.body, service, matrix).map([&](HeightTile decoded) {
+      return published(decoded, [&](SourceTile& tile) { tile.heights = std::move(decoded.metres); });
+    });
+  }
+  return decodeColours(*fetched.body, service, matrix).map([&](const ColourTile& decoded) {
+    return published(decoded, [&](SourceTile& tile) {
+      tile.colours.resize(decoded.rgba.size() / sizeof(Rgba));
+      std::memcpy(tile.colours.data(), decoded.rgba.data(), decoded.rgba.size());
+    });
+  });
 }
 
 }  // namespace meridian::globebrowsing

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "globebrowsing/source/source_tile.h"
 #include "globebrowsing/source/tile_service.h"
 #include "host/api/error.h"
 
@@ -47,5 +48,9 @@ inline constexpr std::int64_t mostTilePixels = std::int64_t{1} << 24;
 /// ones: not-a-number where alpha is 0 (PackedFloat: where the float is one, or beyond 1e6 metres).
 [[nodiscard]] Result<HeightTile> decodeHeights(std::span<const std::uint8_t> bytes, const TileService& service,
                                                std::size_t matrix);
+
+/// Either of them, for a SourceTileStore: a TileDecoder.
+[[nodiscard]] Result<SourceTilePointer> decodeTile(const TileService& service, std::size_t matrix, PixelKind kind,
+                                                   const Fetched& fetched);
 
 }  // namespace meridian::globebrowsing
