@@ -55,7 +55,7 @@ TEST(ProviderRegistry, ListsWhatExistsWhenATypeDoesNot) {
   for (const char* type : {"SpoutImageProvider", "SpoutImageTileLayer", "VideoTileProvider", "VideoTileLayer"}) {
     const auto unsupported = makeProvider(requestFor({{"Type", type}}));
     ASSERT_FALSE(unsupported);
-    EXPECT_THAT(unsupported.error().what, HasSubstr("not supported"));
+    EXPECT_THAT(unsupported.error().what, HasSubstr("not available"));
   }
   EXPECT_FALSE(makeProvider(requestFor({{"Type", 3.0}})));
 }
