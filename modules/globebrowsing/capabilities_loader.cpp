@@ -55,10 +55,15 @@ struct CapabilitiesLoader::Outcome {
 };
 
 void CapabilitiesLoader::load(const MapServer& server, Done done) {
-  auto outcome = std::make_shared<Outcome>();
-  loads_.push_back({outcome, server.url, std::move(done), std::chrono::steady_clock::now() + longestWait, nullptr});
+  loads_.push_back({server, std::move(done), nullptr, {}, nullptr});
+}
+
+void CapabilitiesLoader::begin(Load& load) {
+  load.outcome = std::make_shared<Outcome>();
+  load.end = std::chrono::steady_clock::now() + longestWait;
+  const MapServer& server = load.server;
   if (!isWebAddress(server.url)) {
-    workers_.post([outcome, server](const std::stop_token&) {
+    workers_.post([outcome = load.outcome, server](const std::stop_token&) {
       outcome->put(readDocumentFile(server.url).and_then([&](const Fetched& read) { return offerOf(read, server); }));
     });
     return;
@@ -70,16 +75,16 @@ void CapabilitiesLoader::load(const MapServer& server, Done done) {
   request.emptyStatuses = {};
   request.isPatient = false;
   // The fetcher only weakly: it holds this function.
-  loads_.back().fetch = fetcher_->fetch(
-      request, [&workers = workers_, outcome, server, request, weak = std::weak_ptr(fetcher_)](Result<Fetched> answer) {
-        workers.post([outcome, server, request, weak, answer = std::move(answer)](const std::stop_token&) {
-          MapServers::Offer offer = answer ? offerOf(*answer, server) : tl::make_unexpected(answer.error());
-          if (const std::shared_ptr<Fetcher> fetcher = weak.lock(); fetcher != nullptr && offer) {
-            fetcher->accept(request, *answer);
-          }
-          outcome->put(std::move(offer));
-        });
-      });
+  load.fetch = fetcher_->fetch(request, [&workers = workers_, outcome = load.outcome, server, request,
+                                         weak = std::weak_ptr(fetcher_)](Result<Fetched> answer) {
+    workers.post([outcome, server, request, weak, answer = std::move(answer)](const std::stop_token&) {
+      MapServers::Offer offer = answer ? offerOf(*answer, server) : tl::make_unexpected(answer.error());
+      if (const std::shared_ptr<Fetcher> fetcher = weak.lock(); fetcher != nullptr && offer) {
+        fetcher->accept(request, *answer);
+      }
+      outcome->put(std::move(offer));
+    });
+  });
 }
 
 void CapabilitiesLoader::deliver() {
@@ -87,19 +92,25 @@ void CapabilitiesLoader::deliver() {
     return;
   }
   const auto now = std::chrono::steady_clock::now();
-  std::vector<std::pair<Done, MapServers::Offer>> found;  // called last: they may load others
-  std::erase_if(loads_, [&](Load& load) {
+  std::vector<Load> open;
+  std::vector<std::pair<Done, MapServers::Offer>> found;
+  for (Load& load : loads_) {
+    if (load.outcome == nullptr) {
+      begin(load);
+    }
     std::optional<MapServers::Offer> offer = load.outcome->take();
     if (!offer && now >= load.end) {
-      offer = failure("the capabilities did not arrive within 15 seconds", load.url, "check the server, or try again");
+      offer = failure("the capabilities did not arrive within 15 seconds", load.server.url,
+                      "check the server, or try again");
     }
-    if (!offer) {
-      return false;
+    if (offer) {
+      found.emplace_back(std::move(load.done), std::move(*offer));
+    } else {
+      open.push_back(std::move(load));
     }
-    found.emplace_back(std::move(load.done), std::move(*offer));
-    return true;
-  });
-  for (auto& [done, offer] : found) {
+  }
+  loads_ = std::move(open);
+  for (auto& [done, offer] : found) {  // last: they may load others
     done(std::move(offer));
   }
 }

@@ -23,7 +23,8 @@ class CapabilitiesLoader {
   CapabilitiesLoader(WorkerPool& workers, std::shared_ptr<Fetcher> fetcher)
       : workers_(workers), fetcher_(std::move(fetcher)) {}
 
-  /// `done` is called by deliver(), within longestWait; not at all once the loader is gone.
+  /// Begins with the next deliver(), so that where no frame is drawn (--validate) nobody is asked. `done` is called by
+  /// a later one, within longestWait; not at all once the loader is gone.
   void load(const MapServer& server, Done done);
   /// Every frame.
   void deliver();
@@ -31,12 +32,13 @@ class CapabilitiesLoader {
  private:
   struct Outcome;
   struct Load {
-    std::shared_ptr<Outcome> outcome;
-    std::string url;
+    MapServer server;
     Done done;
+    std::shared_ptr<Outcome> outcome;  ///< null until it has begun
     std::chrono::steady_clock::time_point end;
     std::unique_ptr<PendingFetch> fetch;
   };
+  void begin(Load& load);
 
   WorkerPool& workers_;
   std::shared_ptr<Fetcher> fetcher_;

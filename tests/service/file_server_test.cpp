@@ -154,6 +154,20 @@ TEST_F(ServerDownTest, CapabilitiesThatCannotBeHadAreAnErrorAtOnce) {
   EXPECT_THAT(layer->error()->message(), HasSubstr("127.0.0.1"));
 }
 
+TEST_F(ServerDownTest, NothingIsAnsweredOnceTheNetworkHasEnded) {
+  ServiceStage stage;
+  EXPECT_FALSE(stage.fetcher->hasStarted());
+  const FetchRequest request{.url = "http://127.0.0.1:" + std::to_string(port) + "/0/0/0.png"};
+  const auto unexpected = [](const Result<Fetched>&) { ADD_FAILURE() << "answered"; };
+  const auto before = stage.fetcher->fetch(request, unexpected);
+  EXPECT_TRUE(stage.fetcher->hasStarted());
+  stage.fetcher->close();
+  const auto server = start();
+  const auto after = stage.fetcher->fetch(request, unexpected);
+  EXPECT_NE(after, nullptr);
+  EXPECT_FALSE(stage.fetcher->hasStarted());
+}
+
 TEST_F(ServerDownTest, ALayerThatIsRemovedWhileItOpensIsForgotten) {
   ServiceStage stage;
   auto layer = stage.make({{"FilePath", "WMTS:http://127.0.0.1:" + std::to_string(port) + "/a.xml,layer=a"}});

@@ -20,7 +20,7 @@ class MapServersTest : public ServiceTest {
   void SetUp() override {
     for (const char* program : {"/usr/bin/python3", "/usr/bin/mapserv", "/usr/bin/mapproxy-util"}) {
       if (!std::filesystem::exists(program)) {
-        GTEST_SKIP() << program << " is missing; install python3, mapserver-bin and mapproxy";
+        GTEST_SKIP() << program << " is missing; install python3, cgi-mapserver and mapproxy";
       }
     }
     writeMapFile();

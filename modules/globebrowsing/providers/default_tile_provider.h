@@ -35,6 +35,9 @@ class DefaultTileProvider final : public TileProvider {
   DefaultTileProvider(DataPath path, RasterDescription description, const ProviderRequest& request);
 
   [[nodiscard]] Result<void> check() const override;
+  [[nodiscard]] std::optional<Error> lastFailure() const override {
+    return state() == State::Ready ? source_->lastFailure() : std::nullopt;
+  }
   [[nodiscard]] const RasterDescription& description() const { return description_; }
 
  private:

@@ -50,6 +50,15 @@ Result<void> checkAll(std::span<const ProviderPointer> providers) {
   return {};
 }
 
+std::optional<Error> lastFailureOf(std::span<const ProviderPointer> providers) {
+  for (const ProviderPointer& provider : providers) {
+    if (std::optional<Error> failure = provider->lastFailure()) {
+      return failure;
+    }
+  }
+  return std::nullopt;
+}
+
 bool prepareAll(std::span<const ProviderPointer> providers, bool onlySteps, const std::function<void()>& wake) {
   return std::all_of(providers.begin(), providers.end(), [&](const ProviderPointer& provider) {
     return (onlySteps && provider->steps() == nullptr) || provider->prepare(wake);

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,7 +28,9 @@ using ProviderPointer = std::shared_ptr<TileProvider>;
 
 /// The first complaint of any.
 [[nodiscard]] Result<void> checkAll(std::span<const ProviderPointer> providers);
-/// Prepares them for that, one after the other, as TileProvider::prepare.
+/// The first that there is of any.
+[[nodiscard]] std::optional<Error> lastFailureOf(std::span<const ProviderPointer> providers);
+/// Prepares them for being opened, one after the other, as TileProvider::prepare.
 [[nodiscard]] bool prepareAll(std::span<const ProviderPointer> providers, bool onlySteps,
                               const std::function<void()>& wake);
 /// Opens them (`onlySteps`: those that have steps), one after the other. Some may fail, which is logged; all failing is

@@ -46,6 +46,8 @@ class TileProvider {
   [[nodiscard]] State state() const { return state_.load(std::memory_order_acquire); }
   /// Why it could not be opened; nothing unless Failed.
   [[nodiscard]] std::optional<Error> error() const;
+  /// Of a Ready one whose data come from elsewhere: why some are not there yet, while they are tried again and again.
+  [[nodiscard]] virtual std::optional<Error> lastFailure() const { return std::nullopt; }
 
   /// Before open(): asks for what has to be fetched first. Returns whether nothing is missing. If not, `wake` is called
   /// once, from any thread, perhaps before this returns; then prepare again. On a worker; may read from disk, but waits
@@ -55,7 +57,7 @@ class TileProvider {
   /// outcome stays. Errors also where something had to be fetched first that is not there.
   Result<void> open();
   /// Both on workers, holding none while it waits: Opening at once. A failure is logged, unless nobody wants to read so
-  /// many. The workers outlive the provider.
+  /// many. The workers outlive whatever may wake it.
   static void openOn(WorkerPool& workers, std::shared_ptr<TileProvider> provider, bool logFailure = true);
 
   /// One tile in colourLayout or heightLayout, by and by: where its data come from elsewhere. Null where colours and

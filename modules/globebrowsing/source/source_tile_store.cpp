@@ -166,6 +166,18 @@ class SourceTileStore::State : public std::enable_shared_from_this<State> {
     return bytes_;
   }
 
+  std::optional<Error> lastFailure(const TileService& service) const {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [key, entry] : entries_) {
+      if (entry->service.get() == &service && entry->stage == Entry::Stage::Fetching && entry->fetch != nullptr) {
+        if (std::optional<Error> failure = entry->fetch->lastFailure()) {
+          return failure;
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
   std::size_t pending() const {
     const std::lock_guard lock(mutex_);
     return static_cast<std::size_t>(std::count_if(
@@ -421,6 +433,10 @@ void SourceTileStore::setBudget(std::size_t bytes) {
 
 std::size_t SourceTileStore::bytes() const {
   return state_->bytes();
+}
+
+std::optional<Error> SourceTileStore::lastFailure(const TileService& service) const {
+  return state_->lastFailure(service);
 }
 
 std::size_t SourceTileStore::pending() const {

@@ -67,6 +67,9 @@ class SourceTileStore {
   void setBudget(std::size_t bytes);
   /// Of all decoded tiles.
   [[nodiscard]] std::size_t bytes() const;
+  /// Of a service whose tiles wait for a server that has failed and is asked again: why. The very service that was
+  /// given in a Request.
+  [[nodiscard]] std::optional<Error> lastFailure(const TileService& service) const;
   /// Tiles that are being fetched or decoded.
   [[nodiscard]] std::size_t pending() const;
 
