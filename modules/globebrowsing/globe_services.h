@@ -1,7 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 
+#include "globebrowsing/capabilities_loader.h"
+#include "globebrowsing/network/on_demand_fetcher.h"
+#include "globebrowsing/source/source_tile_store.h"
 #include "globebrowsing/streaming/tile_streamer.h"
 #include "globebrowsing/streaming/worker_pool.h"
 #include "globebrowsing/texture_pool_shares.h"
@@ -11,14 +16,25 @@
 
 namespace meridian::globebrowsing {
 
-/// What all globes share: workers, the request queue with its memory cache, and the budgets, which are the module's
-/// properties. Render thread only.
+/// What all globes share: workers, the network, the request queue with its memory cache, and the budgets, which are the
+/// module's properties. Render thread only.
 class GlobeServices {
  public:
-  /// Adds the budgets to `owner`; both arguments outlive the services.
-  GlobeServices(PropertyOwner& owner, Statistics& statistics);
+  /// Adds the budgets to `owner`; it and the statistics outlive the services. What comes from the network is kept below
+  /// `cacheFolder`; empty: nowhere.
+  GlobeServices(PropertyOwner& owner, Statistics& statistics, const std::filesystem::path& cacheFolder);
+  GlobeServices(const GlobeServices&) = delete;
+  GlobeServices& operator=(const GlobeServices&) = delete;
+  /// Ends the network first: nothing is answered any more, whoever still holds its parts.
+  ~GlobeServices();
 
   [[nodiscard]] WorkerPool& workers() { return workers_; }
+  /// Starts nothing until something is fetched.
+  [[nodiscard]] const std::shared_ptr<OnDemandFetcher>& fetcher() const { return fetcher_; }
+  /// Of all map services; layers hold it.
+  [[nodiscard]] const std::shared_ptr<SourceTileStore>& sourceTiles() const { return sourceTiles_; }
+  /// Delivers in enterFrame.
+  [[nodiscard]] CapabilitiesLoader& capabilities() { return capabilities_; }
   [[nodiscard]] TileStreamer& streamer() { return streamer_; }
   [[nodiscard]] TexturePoolShares& poolShares() { return poolShares_; }
   [[nodiscard]] Statistics& statistics() { return statistics_; }
@@ -35,12 +51,19 @@ class GlobeServices {
       512,
       64,
       65536};
+  OptionProperty networkCacheMode;  ///< in the order of CacheMode
+  IntProperty networkCacheSize;
   FloatProperty compositionBudget{
       {"CompositionBudget", "Composition budget", "Of blending layers in a frame, in milliseconds"}, 2.0, {0.1, 100.0}};
 
  private:
+  GlobeServices(PropertyOwner& owner, Statistics& statistics, const NetworkOptions& network);
+
   Statistics& statistics_;
   WorkerPool workers_;
+  std::shared_ptr<OnDemandFetcher> fetcher_;
+  std::shared_ptr<SourceTileStore> sourceTiles_;
+  CapabilitiesLoader capabilities_;
   TileStreamer streamer_;
   TexturePoolShares poolShares_;
   std::uint64_t frame_ = ~std::uint64_t{0};

@@ -15,7 +15,10 @@ class GlobeBrowsingModule final : public Module {
   GlobeBrowsingModule() : Module("GlobeBrowsing", "Globe browsing", "Planets and moons from map data") {}
 
   Result<void> initialize(Host& host) override {
-    services_ = std::make_unique<GlobeServices>(*this, host.statistics());
+    services_ = std::make_unique<GlobeServices>(*this, host.statistics(), host.paths().cache);
+    servers_.setLoader([this](const MapServer& server, std::function<void(MapServers::Offer)> done) {
+      services_->capabilities().load(server, std::move(done));
+    });
     host.registerRenderable("RenderableGlobe", [this](const RenderableRequest& request) {
       return RenderableGlobe::create(request, *services_);
     });

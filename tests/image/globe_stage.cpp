@@ -51,7 +51,7 @@ GlobeStage::GlobeStage(graphics::Context& context, const SmoothWorld& world, con
   paths_.shaders = std::filesystem::path(MERIDIAN_SOURCE_FOLDER) / "shaders";
   paths_.cache = folder;
   graphics_ = valueOf(graphics::Graphics::create(context, paths_, statistics_));
-  services_ = std::make_unique<GlobeServices>(owner_, statistics_);
+  services_ = std::make_unique<GlobeServices>(owner_, statistics_, folder);
   if (!services_->compositionBudget.set(Value(100.0))) {
     throw std::runtime_error("no such composition budget");
   }

@@ -3,10 +3,14 @@
 #include <utility>
 
 #include "globebrowsing/streaming/tile_streamer.h"
+#include "host/api/log.h"
 
 namespace meridian::globebrowsing {
 
 namespace {
+
+/// Whether tiles wait for their server need not be known sooner.
+constexpr int framesBetweenLooks = 30;
 
 std::string_view stateName(TileProvider::State state) {
   switch (state) {
@@ -198,6 +202,23 @@ void Layer::updateStatus() {
     seenError_ = tileError;
     lastError.put(tileError != nullptr ? tileError->message() : std::string());
   }
+  if (--framesUntilLook_ < 0) {
+    framesUntilLook_ = framesBetweenLooks;
+    noteWaiting();
+  }
+}
+
+void Layer::noteWaiting() {
+  const std::optional<Error> failure = step_ != nullptr ? step_->tiles()->lastFailure() : std::nullopt;
+  std::string text = failure ? failure->message() : std::string();
+  if (text == seenFailure_) {
+    return;
+  }
+  if (seenFailure_.empty()) {
+    log::warning("{}: tiles wait: {}", uri(), text);
+  }
+  seenFailure_ = std::move(text);
+  lastError.put(seenFailure_.empty() && seenError_ != nullptr ? seenError_->message() : seenFailure_);
 }
 
 }  // namespace meridian::globebrowsing

@@ -108,6 +108,7 @@ class Layer final : public PropertyOwner {
   void restart();
   void play(const Time& now);
   void updateStatus();
+  void noteWaiting();
 
   LayerGroupId group_;
   int zIndex_;
@@ -121,6 +122,8 @@ class Layer final : public PropertyOwner {
   std::function<void(const Layer&, Change)> changed_;
   TileProvider::State seenState_ = TileProvider::State::NotOpened;
   const Error* seenError_ = nullptr;
+  std::string seenFailure_;  ///< of tiles that wait
+  int framesUntilLook_ = 0;
   bool wantsRemoval_ = false;
   bool quiet_ = false;  ///< SetDefault tells once, not three times
 };

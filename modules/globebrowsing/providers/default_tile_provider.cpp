@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "globebrowsing/source/tiled_service_source.h"
+#include "host/api/log.h"
 
 namespace meridian::globebrowsing {
 
@@ -46,9 +47,18 @@ Result<std::optional<std::array<double, 4>>> extentOf(const ProviderRequest& req
   return std::array<double, 4>{sides[0], sides[1], sides[2], sides[3]};
 }
 
-/// The map service that the data are, or nothing: what describes services from documents is joined here.
-Result<std::optional<TileService>> describeService(const DataPath& /*path*/, const RasterDescription& /*description*/) {
-  return std::nullopt;
+/// The asset's word on heights, in place of the service's own.
+TileService withHeights(TileService service, const RasterDescription& description) {
+  if (description.heightScale) {
+    service.heightScale = description.heightScale;
+  }
+  if (description.heightOffset) {
+    service.heightOffset = description.heightOffset;
+  }
+  if (description.heightDatum) {
+    service.heightOffset = service.heightOffset.value_or(0.0) - *description.heightDatum;
+  }
+  return service;
 }
 
 }  // namespace
@@ -85,8 +95,9 @@ const Schema& DefaultTileProvider::schema() {
   using Type = Schema::Type;
   static const Schema fields(
       {{"FilePath", Type::String,
-        "a raster file, relative to the asset's folder or absolute; or the text of a VRT or GDAL_WMS document; or a "
-        "GDAL connection string such as WMS:... or /vsicurl/...",
+        "a raster file, relative to the asset's folder or absolute; or a map service, as docs/services.md tells; or a "
+        "GDAL "
+        "connection string such as /vsicurl/...",
         true},
        {"TilePixelSize", Type::Integer, "pixels along a tile; tiles here are always 512 wide", false, 32.0, 2048.0},
        {"ExtentDegrees", Type::Vector4,
@@ -115,30 +126,59 @@ Result<std::shared_ptr<TileProvider>> DefaultTileProvider::make(const ProviderRe
   description.heightScale = numberAt(request.table, "HeightScale");
   description.heightOffset = numberAt(request.table, "HeightOffset");
   description.heightDatum = numberAt(request.table, "HeightDatum");
-  return std::make_shared<DefaultTileProvider>(std::move(path), std::move(description), request.sourceTiles);
+  return std::make_shared<DefaultTileProvider>(std::move(path), std::move(description), request);
+}
+
+DefaultTileProvider::DefaultTileProvider(DataPath path, RasterDescription description, const ProviderRequest& request)
+    : path_(std::move(path)),
+      description_(std::move(description)),
+      sourceTiles_(request.sourceTiles),
+      notesTold_(request.notesTold) {
+  // A service has its own georeference; one that the asset replaces is a raster's.
+  if (sourceTiles_ != nullptr && !description_.extentDegrees) {
+    opening_ = std::make_unique<ServiceOpening>(path_.text, description_.where, sourceTiles_->fetcher());
+  }
 }
 
 Result<void> DefaultTileProvider::check() const {
   return checkData(path_, description_.where);
 }
 
-Result<void> DefaultTileProvider::openData() {
-  return check().and_then([this] { return openSource(); }).map([this](std::shared_ptr<PixelSource> source) {
-    source_ = std::move(source);
-  });
+bool DefaultTileProvider::prepareData(const std::function<void()>& wake) {
+  return opening_ == nullptr || !check() || opening_->prepare(wake);
 }
 
-Result<std::shared_ptr<PixelSource>> DefaultTileProvider::openSource() const {
-  if (sourceTiles_ != nullptr) {
-    const Result<std::optional<TileService>> service = describeService(path_, description_);
+Result<void> DefaultTileProvider::openData() {
+  const Result<void> opened =
+      check().and_then([this] { return openSource(); }).map([this](std::shared_ptr<PixelSource> source) {
+        source_ = std::move(source);
+      });
+  opening_.reset();
+  return opened;
+}
+
+Result<std::shared_ptr<PixelSource>> DefaultTileProvider::openSource() {
+  if (opening_ != nullptr) {
+    Result<std::optional<TileService>> service = opening_->service();
     if (!service) {
-      return tl::make_unexpected(service.error());
+      return tl::make_unexpected(std::move(service.error()));
     }
     if (*service) {
-      return TiledServiceSource::make(**service, sourceTiles_);
+      tellNotes();
+      return TiledServiceSource::make(withHeights(std::move(**service), description_), sourceTiles_);
     }
   }
   return RasterSource::open(description_);
+}
+
+void DefaultTileProvider::tellNotes() const {
+  const std::vector<std::string> notes = opening_->notes();
+  if (notes.empty() || (notesTold_ != nullptr && notesTold_->exchange(true))) {
+    return;
+  }
+  for (const std::string& note : notes) {
+    log::info("{}: {}", description_.where, note);
+  }
 }
 
 Result<ColourPixels> DefaultTileProvider::makeColours(const Tiling& tiling, const TileIndex& index,

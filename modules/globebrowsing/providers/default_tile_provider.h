@@ -4,6 +4,7 @@
 #include <string>
 
 #include "globebrowsing/providers/provider_registry.h"
+#include "globebrowsing/providers/service_opening.h"
 #include "globebrowsing/source/raster_source.h"
 #include "globebrowsing/source/source_tile_store.h"
 
@@ -30,17 +31,21 @@ class DefaultTileProvider final : public TileProvider {
   [[nodiscard]] static const Schema& schema();
   [[nodiscard]] static Result<std::shared_ptr<TileProvider>> make(const ProviderRequest& request);
 
-  /// Without a store, map services are left to GDAL.
-  DefaultTileProvider(DataPath path, RasterDescription description, std::shared_ptr<SourceTileStore> sourceTiles)
-      : path_(std::move(path)), description_(std::move(description)), sourceTiles_(std::move(sourceTiles)) {}
+  /// Without source tiles, map services are left to GDAL.
+  DefaultTileProvider(DataPath path, RasterDescription description, const ProviderRequest& request);
 
   [[nodiscard]] Result<void> check() const override;
+  [[nodiscard]] std::optional<Error> lastFailure() const override {
+    return state() == State::Ready ? source_->lastFailure() : std::nullopt;
+  }
   [[nodiscard]] const RasterDescription& description() const { return description_; }
 
  private:
+  [[nodiscard]] bool prepareData(const std::function<void()>& wake) override;
   [[nodiscard]] Result<void> openData() override;
   /// A map service's source where the data are one, else a raster's.
-  [[nodiscard]] Result<std::shared_ptr<PixelSource>> openSource() const;
+  [[nodiscard]] Result<std::shared_ptr<PixelSource>> openSource();
+  void tellNotes() const;
   [[nodiscard]] Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
                                                  std::stop_token stop) const override;
   [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index,
@@ -53,6 +58,8 @@ class DefaultTileProvider final : public TileProvider {
   DataPath path_;
   RasterDescription description_;
   std::shared_ptr<SourceTileStore> sourceTiles_;
+  std::shared_ptr<std::atomic<bool>> notesTold_;
+  std::unique_ptr<ServiceOpening> opening_;  ///< until it is open; null where the data are no map service's
   std::shared_ptr<PixelSource> source_;
 };
 

@@ -11,7 +11,7 @@ namespace meridian::globebrowsing {
 ProviderRequest innerRequest(const ProviderRequest& outer, std::string_view key, const Value& table) {
   std::string path = outer.path;
   path.append(path.empty() ? "" : ".").append(key);
-  return {table, outer.where, std::move(path), outer.folder};
+  return {table, outer.where, std::move(path), outer.folder, outer.sourceTiles, outer.notesTold};
 }
 
 Result<ProviderPointer> makeInner(const ProviderRequest& inner) {
@@ -32,7 +32,7 @@ ProviderRequest rasterRequest(const ProviderRequest& outer, std::string filePath
   Table table = outer.table.isTable() ? *outer.table.table() : Table{};
   table.fields["Type"] = std::string(name(LayerType::DefaultTileProvider));
   table.fields["FilePath"] = std::move(filePath);
-  return {std::move(table), outer.where, outer.path, outer.folder};
+  return {std::move(table), outer.where, outer.path, outer.folder, outer.sourceTiles, outer.notesTold};
 }
 
 const Value& valueAt(const Value& table, std::string_view key) {
@@ -48,6 +48,21 @@ Result<void> checkAll(std::span<const ProviderPointer> providers) {
     }
   }
   return {};
+}
+
+std::optional<Error> lastFailureOf(std::span<const ProviderPointer> providers) {
+  for (const ProviderPointer& provider : providers) {
+    if (std::optional<Error> failure = provider->lastFailure()) {
+      return failure;
+    }
+  }
+  return std::nullopt;
+}
+
+bool prepareAll(std::span<const ProviderPointer> providers, bool onlySteps, const std::function<void()>& wake) {
+  return std::all_of(providers.begin(), providers.end(), [&](const ProviderPointer& provider) {
+    return (onlySteps && provider->steps() == nullptr) || provider->prepare(wake);
+  });
 }
 
 Result<void> openAll(std::span<const ProviderPointer> providers, bool onlySteps) {

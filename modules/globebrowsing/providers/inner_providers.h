@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,6 +28,11 @@ using ProviderPointer = std::shared_ptr<TileProvider>;
 
 /// The first complaint of any.
 [[nodiscard]] Result<void> checkAll(std::span<const ProviderPointer> providers);
+/// The first that there is of any.
+[[nodiscard]] std::optional<Error> lastFailureOf(std::span<const ProviderPointer> providers);
+/// Prepares them for being opened, one after the other, as TileProvider::prepare.
+[[nodiscard]] bool prepareAll(std::span<const ProviderPointer> providers, bool onlySteps,
+                              const std::function<void()>& wake);
 /// Opens them (`onlySteps`: those that have steps), one after the other. Some may fail, which is logged; all failing is
 /// an error.
 [[nodiscard]] Result<void> openAll(std::span<const ProviderPointer> providers, bool onlySteps);

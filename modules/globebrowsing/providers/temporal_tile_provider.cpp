@@ -109,6 +109,7 @@ Result<std::shared_ptr<TileProvider>> TemporalTileProvider::make(const ProviderR
 
 TemporalTileProvider::TemporalTileProvider(ProviderRequest request, std::unique_ptr<TimeSeries> series)
     : request_(std::move(request)), isFile_(series == nullptr), rasters_(request_), series_(std::move(series)) {
+  rasters_.notesTold = std::make_shared<std::atomic<bool>>(false);
   owner_.addProperty(useFixedTime);
   owner_.addProperty(fixedTime);
 }

@@ -13,6 +13,18 @@ std::optional<Error> TileProvider::error() const {
   return state() == State::Failed ? error_ : std::nullopt;
 }
 
+bool TileProvider::prepare(const std::function<void()>& wake) {
+  const std::lock_guard lock(opening_);
+  if (state() == State::Ready || state() == State::Failed) {
+    return true;
+  }
+  try {
+    return prepareData(wake);
+  } catch (const std::exception&) {
+    return true;  // opening it meets the same, and says so
+  }
+}
+
 Result<void> TileProvider::open() {
   const std::lock_guard lock(opening_);
   if (state() == State::Ready) {
@@ -42,12 +54,28 @@ Result<void> TileProvider::openGuarded() {
 void TileProvider::openOn(WorkerPool& workers, std::shared_ptr<TileProvider> provider, bool logFailure) {
   State expected = State::NotOpened;
   if (provider->state_.compare_exchange_strong(expected, State::Opening)) {
-    workers.post([provider = std::move(provider), logFailure](const std::stop_token&) {
-      // The outcome is kept in state() and error(), but a user who looks at a bare globe looks at the log first.
-      if (const Result<void> opened = provider->open(); !opened && logFailure) {
-        log::error("{}", opened.error().message());
+    workers.post([&workers, provider = std::move(provider), logFailure](const std::stop_token&) {
+      openWhenPrepared(workers, provider, logFailure);
+    });
+  }
+}
+
+void TileProvider::openWhenPrepared(WorkerPool& workers, const std::shared_ptr<TileProvider>& provider,
+                                    bool logFailure) {
+  // Only weakly: a provider that nobody wants any more need not be opened, and must not end on the network's thread.
+  const auto wake = [&workers, weak = std::weak_ptr(provider), logFailure] {
+    workers.post([&workers, weak, logFailure](const std::stop_token&) {
+      if (const std::shared_ptr<TileProvider> still = weak.lock()) {
+        openWhenPrepared(workers, still, logFailure);
       }
     });
+  };
+  if (!provider->prepare(wake)) {
+    return;
+  }
+  // The outcome is kept in state() and error(), but a user who looks at a bare globe looks at the log first.
+  if (const Result<void> opened = provider->open(); !opened && logFailure) {
+    log::error("{}", opened.error().message());
   }
 }
 

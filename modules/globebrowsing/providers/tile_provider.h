@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -45,11 +46,18 @@ class TileProvider {
   [[nodiscard]] State state() const { return state_.load(std::memory_order_acquire); }
   /// Why it could not be opened; nothing unless Failed.
   [[nodiscard]] std::optional<Error> error() const;
+  /// Of a Ready one whose data come from elsewhere: why some are not there yet, while they are tried again and again.
+  [[nodiscard]] virtual std::optional<Error> lastFailure() const { return std::nullopt; }
 
-  /// Opens unless it is open, on this thread; may read from disk or network. A call during another's waits for it. The
-  /// first outcome stays.
+  /// Before open(): asks for what has to be fetched first. Returns whether nothing is missing. If not, `wake` is called
+  /// once, from any thread, perhaps before this returns; then prepare again. On a worker; may read from disk, but waits
+  /// for no server.
+  [[nodiscard]] bool prepare(const std::function<void()>& wake);
+  /// Opens unless it is open, on this thread; may read from disk. A call during another's waits for it. The first
+  /// outcome stays. Errors also where something had to be fetched first that is not there.
   Result<void> open();
-  /// The same on a worker: Opening at once. A failure is logged, unless nobody wants to read so many.
+  /// Both on workers, holding none while it waits: Opening at once. A failure is logged, unless nobody wants to read so
+  /// many. The workers outlive whatever may wake it.
   static void openOn(WorkerPool& workers, std::shared_ptr<TileProvider> provider, bool logFailure = true);
 
   /// One tile in colourLayout or heightLayout, by and by: where its data come from elsewhere. Null where colours and
@@ -71,6 +79,8 @@ class TileProvider {
   [[nodiscard]] bool hasFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const;
 
  private:
+  /// As prepare(), before openData().
+  [[nodiscard]] virtual bool prepareData(const std::function<void()>& /*wake*/) { return true; }
   /// Called once, before any of the following; those only after it succeeded.
   [[nodiscard]] virtual Result<void> openData() = 0;
   [[nodiscard]] virtual Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
@@ -89,6 +99,7 @@ class TileProvider {
   [[nodiscard]] virtual bool dataFiner(const Tiling& tiling, const TileIndex& index,
                                        const TileLayout& layout) const = 0;
 
+  static void openWhenPrepared(WorkerPool& workers, const std::shared_ptr<TileProvider>& provider, bool logFailure);
   [[nodiscard]] Result<void> openGuarded();
   [[nodiscard]] Result<void> requireReady() const;
 

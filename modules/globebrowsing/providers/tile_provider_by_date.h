@@ -27,6 +27,9 @@ class TileProviderByDate final : public SteppedTileProvider {
 
  private:
   /// Those that have steps; the others are opened when their time comes.
+  [[nodiscard]] bool prepareData(const std::function<void()>& wake) override {
+    return prepareAll(providers_, true, wake);
+  }
   [[nodiscard]] Result<void> openData() override { return openAll(providers_, true); }
   [[nodiscard]] std::size_t entryAt(const Time& now) const;
 

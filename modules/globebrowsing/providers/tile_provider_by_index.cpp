@@ -99,6 +99,29 @@ std::size_t samples(const TileLayout& layout) {
   return static_cast<std::size_t>(layout.size()) * static_cast<std::size_t>(layout.size());
 }
 
+/// The cell's part of the tile; where it has nothing there will be nothing.
+void put(const ColourPixels& part, const TileProviderByIndex::Cell& cell, const Tiling& tiling, const TileIndex& index,
+         ColourPixels& all) {
+  all.size = colourLayout.size();
+  all.rgba.resize(4 * samples(colourLayout));
+  forSamplesIn(cell, tiling, index, colourLayout, [&](std::size_t sample) {
+    for (std::size_t i = 4 * sample; i < 4 * sample + 4; ++i) {
+      all.rgba[i] = part.rgba.empty() ? std::uint8_t{0} : part.rgba[i];
+    }
+  });
+  renewSummary(all);
+}
+
+void put(const HeightPixels& part, const TileProviderByIndex::Cell& cell, const Tiling& tiling, const TileIndex& index,
+         HeightPixels& all) {
+  constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
+  all.size = heightLayout.size();
+  all.metres.resize(samples(heightLayout), nothing);
+  forSamplesIn(cell, tiling, index, heightLayout,
+               [&](std::size_t sample) { all.metres[sample] = part.metres.empty() ? nothing : part.metres[sample]; });
+  renewSummary(all);
+}
+
 }  // namespace
 
 const Schema& TileProviderByIndex::schema() {
@@ -152,60 +175,119 @@ Result<std::shared_ptr<TileProvider>> TileProviderByIndex::make(const Time& now)
       });
 }
 
+bool TileProviderByIndex::isShown(const Cell& cell, const Tiling& tiling, const TileIndex& index) {
+  return cell.level == index.level && isWithin(cell, tiling, index);
+}
+
 bool TileProviderByIndex::isWithin(const Cell& cell, const Tiling& tiling, const TileIndex& index) {
   return tiling.locate((cell.south + cell.north) / 2.0, (cell.west + cell.east) / 2.0, index.level).index == index;
 }
 
-Result<ColourPixels> TileProviderByIndex::makeColours(const Tiling& tiling, const TileIndex& index,
-                                                      std::stop_token stop) const {
-  Result<ColourPixels> all = providers_[0]->colours(tiling, index, stop);
+template <class Pixels, class Make>
+Result<Pixels> TileProviderByIndex::compose(const Tiling& tiling, const TileIndex& index, Make make) const {
+  Result<Pixels> all = make(0);
   for (std::size_t i = 0; i < cells_.size() && all; ++i) {
-    if (cells_[i].level != index.level || !isWithin(cells_[i], tiling, index)) {
+    if (!isShown(cells_[i], tiling, index)) {
       continue;
     }
-    Result<ColourPixels> part = providers_[i + 1]->colours(tiling, index, stop);
+    const Result<Pixels> part = make(i + 1);
     if (!part) {
       return part;
     }
-    all->size = colourLayout.size();
-    all->rgba.resize(4 * samples(colourLayout));
-    part->rgba.resize(all->rgba.size());
-    forSamplesIn(cells_[i], tiling, index, colourLayout, [&](std::size_t sample) {
-      std::copy_n(part->rgba.begin() + static_cast<std::ptrdiff_t>(4 * sample), 4,
-                  all->rgba.begin() + static_cast<std::ptrdiff_t>(4 * sample));
-    });
-    renewSummary(*all);
+    put(*part, cells_[i], tiling, index, *all);
   }
   return all;
 }
 
+Result<ColourPixels> TileProviderByIndex::makeColours(const Tiling& tiling, const TileIndex& index,
+                                                      std::stop_token stop) const {
+  return compose<ColourPixels>(
+      tiling, index, [&](std::size_t provider) { return providers_[provider]->colours(tiling, index, stop); });
+}
+
 Result<HeightPixels> TileProviderByIndex::makeHeights(const Tiling& tiling, const TileIndex& index,
                                                       std::stop_token stop) const {
-  constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
-  Result<HeightPixels> all = providers_[0]->heights(tiling, index, stop);
-  for (std::size_t i = 0; i < cells_.size() && all; ++i) {
-    if (cells_[i].level != index.level || !isWithin(cells_[i], tiling, index)) {
-      continue;
+  return compose<HeightPixels>(
+      tiling, index, [&](std::size_t provider) { return providers_[provider]->heights(tiling, index, stop); });
+}
+
+/// Of the providers that the tile is made of, those that give theirs by and by.
+template <class Pixels>
+class TileProviderByIndex::Task final : public PixelTask<Pixels> {
+ public:
+  Task(const TileProviderByIndex& all, const Tiling& tiling, const TileIndex& index)
+      : all_(all), tiling_(tiling), index_(index), parts_(all.providers_.size()) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (i == 0 || isShown(all.cells_[i - 1], tiling, index)) {
+        begin(*all.providers_[i], parts_[i]);
+      }
     }
-    Result<HeightPixels> part = providers_[i + 1]->heights(tiling, index, stop);
-    if (!part) {
-      return part;
-    }
-    all->size = heightLayout.size();
-    all->metres.resize(samples(heightLayout), nothing);
-    part->metres.resize(all->metres.size(), nothing);
-    forSamplesIn(cells_[i], tiling, index, heightLayout,
-                 [&](std::size_t sample) { all->metres[sample] = part->metres[sample]; });
-    renewSummary(*all);
   }
-  return all;
+  [[nodiscard]] bool isNeeded() const {
+    return std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part != nullptr; });
+  }
+
+  bool prepare(double priority, const std::function<void()>& wake) override {
+    return std::all_of(parts_.begin(), parts_.end(),
+                       [&](const auto& part) { return part == nullptr || part->prepare(priority, wake); });
+  }
+  void setPriority(double priority) override {
+    for (const auto& part : parts_) {
+      if (part != nullptr) {
+        part->setPriority(priority);
+      }
+    }
+  }
+  Result<Pixels> make(const std::stop_token& stop) override {
+    return all_.template compose<Pixels>(tiling_, index_, [&](std::size_t i) {
+      return parts_[i] != nullptr ? parts_[i]->make(stop) : atOnce(*all_.providers_[i], parts_[i], stop);
+    });
+  }
+  std::optional<Error> flaw() const override {
+    for (const auto& part : parts_) {
+      if (std::optional<Error> flaw = part != nullptr ? part->flaw() : std::nullopt) {
+        return flaw;
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  void begin(const TileProvider& provider, std::unique_ptr<ColourTask>& part) {
+    part = provider.colourTask(tiling_, index_);
+  }
+  void begin(const TileProvider& provider, std::unique_ptr<HeightTask>& part) {
+    part = provider.heightTask(tiling_, index_);
+  }
+  Result<ColourPixels> atOnce(const TileProvider& provider, const std::unique_ptr<ColourTask>&,
+                              const std::stop_token& stop) const {
+    return provider.colours(tiling_, index_, stop);
+  }
+  Result<HeightPixels> atOnce(const TileProvider& provider, const std::unique_ptr<HeightTask>&,
+                              const std::stop_token& stop) const {
+    return provider.heights(tiling_, index_, stop);
+  }
+
+  const TileProviderByIndex& all_;
+  const Tiling& tiling_;
+  TileIndex index_;
+  std::vector<std::unique_ptr<PixelTask<Pixels>>> parts_;  ///< by provider; null where it needs none
+};
+
+std::unique_ptr<ColourTask> TileProviderByIndex::makeColourTask(const Tiling& tiling, const TileIndex& index) const {
+  auto task = std::make_unique<Task<ColourPixels>>(*this, tiling, index);
+  return task->isNeeded() ? std::move(task) : nullptr;
+}
+
+std::unique_ptr<HeightTask> TileProviderByIndex::makeHeightTask(const Tiling& tiling, const TileIndex& index) const {
+  auto task = std::make_unique<Task<HeightPixels>>(*this, tiling, index);
+  return task->isNeeded() ? std::move(task) : nullptr;
 }
 
 bool TileProviderByIndex::dataOverlap(const Tiling& tiling, const TileIndex& index) const {
   bool any = providers_[0]->overlaps(tiling, index);
   for (std::size_t i = 0; i < cells_.size() && !any; ++i) {
-    any = cells_[i].level == index.level && isWithin(cells_[i], tiling, index) &&
-          providers_[i + 1]->overlaps(tiling, index);
+    any = isShown(cells_[i], tiling, index) && providers_[i + 1]->overlaps(tiling, index);
   }
   return any;
 }

@@ -33,17 +33,30 @@ class TileProviderByIndex final : public TileProvider, private TileSteps {
 
   [[nodiscard]] const TileSteps* steps() const override { return anySteps(providers_) ? this : nullptr; }
   [[nodiscard]] Result<void> check() const override { return checkAll(providers_); }
+  [[nodiscard]] std::optional<Error> lastFailure() const override { return lastFailureOf(providers_); }
 
  private:
   [[nodiscard]] TileStep at(const Time& now) const override { return stepOf(providers_, now); }
   [[nodiscard]] Result<std::shared_ptr<TileProvider>> make(const Time& now) const override;
+  [[nodiscard]] bool prepareData(const std::function<void()>& wake) override {
+    return prepareAll(providers_, steps() != nullptr, wake);
+  }
   [[nodiscard]] Result<void> openData() override { return openAll(providers_, steps() != nullptr); }
   [[nodiscard]] Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
                                                  std::stop_token stop) const override;
   [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index,
                                                  std::stop_token stop) const override;
+  [[nodiscard]] std::unique_ptr<ColourTask> makeColourTask(const Tiling& tiling, const TileIndex& index) const override;
+  [[nodiscard]] std::unique_ptr<HeightTask> makeHeightTask(const Tiling& tiling, const TileIndex& index) const override;
   [[nodiscard]] bool dataOverlap(const Tiling& tiling, const TileIndex& index) const override;
   [[nodiscard]] bool dataFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const override;
+  template <class Pixels>
+  class Task;
+  /// The tile of all that it is made of; `make(i)` gives that of provider i.
+  template <class Pixels, class Make>
+  [[nodiscard]] Result<Pixels> compose(const Tiling& tiling, const TileIndex& index, Make make) const;
+  /// Whether the cell replaces a part of just that tile.
+  [[nodiscard]] static bool isShown(const Cell& cell, const Tiling& tiling, const TileIndex& index);
   /// Whether the cell's middle is in the tile.
   [[nodiscard]] static bool isWithin(const Cell& cell, const Tiling& tiling, const TileIndex& index);
 

@@ -73,6 +73,14 @@ Result<HeightPixels> TileProviderByLevel::makeHeights(const Tiling& tiling, cons
   return providers_[entryOf(index.level)]->heights(tiling, index, std::move(stop));
 }
 
+std::unique_ptr<ColourTask> TileProviderByLevel::makeColourTask(const Tiling& tiling, const TileIndex& index) const {
+  return providers_[entryOf(index.level)]->colourTask(tiling, index);
+}
+
+std::unique_ptr<HeightTask> TileProviderByLevel::makeHeightTask(const Tiling& tiling, const TileIndex& index) const {
+  return providers_[entryOf(index.level)]->heightTask(tiling, index);
+}
+
 bool TileProviderByLevel::dataOverlap(const Tiling& tiling, const TileIndex& index) const {
   return providers_[entryOf(index.level)]->overlaps(tiling, index);
 }

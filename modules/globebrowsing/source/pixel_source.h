@@ -55,6 +55,8 @@ class PixelSource {
                                                                const TileLayout& /*layout*/) const {
     return nullptr;
   }
+  /// Why data that were asked for are not there yet, where they are tried again and again.
+  [[nodiscard]] virtual std::optional<Error> lastFailure() const { return std::nullopt; }
 };
 
 }  // namespace meridian::globebrowsing

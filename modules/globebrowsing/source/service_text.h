@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "globebrowsing/network/header_fields.h"
+
 namespace meridian::globebrowsing {
 
-// What reading the documents of map services takes: ASCII text, whatever the locale.
+// What reading the documents of map services takes besides: ASCII text, whatever the locale.
 
-[[nodiscard]] std::string_view trimmed(std::string_view text);
 [[nodiscard]] std::string lowerCase(std::string_view text);
-[[nodiscard]] bool equalIgnoringCase(std::string_view a, std::string_view b);
 [[nodiscard]] bool containsIgnoringCase(std::string_view text, std::string_view part);
 /// The parts between separators, trimmed, empty ones left out.
 [[nodiscard]] std::vector<std::string> split(std::string_view text, std::string_view separators);

@@ -28,7 +28,9 @@ struct SourceTile {
 };
 using SourceTilePointer = std::shared_ptr<const SourceTile>;
 
-/// An answer's body (never null) -> pixels; null when it says that there is nothing. On a worker.
-using TileDecoder = std::function<Result<SourceTilePointer>(const TileService&, PixelKind, const Fetched&)>;
+/// An answer's body (never null) for a tile of service.matrices[matrix] -> pixels; null when it says that there is
+/// nothing. On a worker.
+using TileDecoder =
+    std::function<Result<SourceTilePointer>(const TileService&, std::size_t matrix, PixelKind, const Fetched&)>;
 
 }  // namespace meridian::globebrowsing

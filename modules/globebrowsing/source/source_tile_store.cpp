@@ -27,10 +27,10 @@ std::string keyOf(const TileService& service, PixelKind kind, const TileMatrix& 
   return key;
 }
 
-Result<SourceTilePointer> decodeGuarded(const TileDecoder& decode, const TileService& service, PixelKind kind,
-                                        const Fetched& fetched) {
+Result<SourceTilePointer> decodeGuarded(const TileDecoder& decode, const TileService& service, std::size_t matrix,
+                                        PixelKind kind, const Fetched& fetched) {
   try {
-    return decode(service, kind, fetched);
+    return decode(service, matrix, kind, fetched);
   } catch (const std::exception& exception) {
     return failure(std::string("decoding threw: ") + exception.what());
   } catch (...) {
@@ -75,7 +75,7 @@ class SourceTileStore::State : public std::enable_shared_from_this<State> {
     std::string key;
     std::shared_ptr<const TileService> service;
     PixelKind kind = PixelKind::Colours;
-    TileMatrix matrix;
+    std::size_t matrix = 0;  ///< its place in the service's
     FetchRequest request;
     Stage stage = Stage::Fetching;
     double priority = 0.0;
@@ -95,6 +95,8 @@ class SourceTileStore::State : public std::enable_shared_from_this<State> {
   };
 
   State(Parts parts, std::size_t budget) : parts_(std::move(parts)), budget_(budget) {}
+
+  const std::shared_ptr<Fetcher>& fetcher() const { return parts_.fetcher; }
 
   void close() {
     Aftermath after;
@@ -164,6 +166,18 @@ class SourceTileStore::State : public std::enable_shared_from_this<State> {
     return bytes_;
   }
 
+  std::optional<Error> lastFailure(const TileService& service) const {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [key, entry] : entries_) {
+      if (entry->service.get() == &service && entry->stage == Entry::Stage::Fetching && entry->fetch != nullptr) {
+        if (std::optional<Error> failure = entry->fetch->lastFailure()) {
+          return failure;
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
   std::size_t pending() const {
     const std::lock_guard lock(mutex_);
     return static_cast<std::size_t>(std::count_if(
@@ -182,7 +196,7 @@ class SourceTileStore::State : public std::enable_shared_from_this<State> {
       entry->key = std::move(key);
       entry->service = request.service;
       entry->kind = request.kind;
-      entry->matrix = matrix;
+      entry->matrix = tile.matrix;
       entry->request = std::move(fetch);
       entry->priority = request.priority;
       after.start.push_back(entry);
@@ -313,9 +327,10 @@ class SourceTileStore::State : public std::enable_shared_from_this<State> {
       dropFetch(*entry, after);
     }
     after.drop.clear();
-    auto decoded =
-        decodeGuarded(parts_.decode, *entry->service, entry->kind, entry->fetched)
-            .and_then([&](SourceTilePointer tile) { return checked(std::move(tile), entry->kind, entry->matrix); });
+    auto decoded = decodeGuarded(parts_.decode, *entry->service, entry->matrix, entry->kind, entry->fetched)
+                       .and_then([&](SourceTilePointer tile) {
+                         return checked(std::move(tile), entry->kind, entry->service->matrices[entry->matrix]);
+                       });
     if (decoded && *decoded != nullptr) {
       parts_.fetcher->accept(entry->request, entry->fetched);
     } else {
@@ -408,12 +423,20 @@ std::unique_ptr<SourceTileStore::Want> SourceTileStore::want(Request request) {
   return std::make_unique<HeldWant>(state_, std::move(request));
 }
 
+const std::shared_ptr<Fetcher>& SourceTileStore::fetcher() const {
+  return state_->fetcher();
+}
+
 void SourceTileStore::setBudget(std::size_t bytes) {
   state_->setBudget(bytes);
 }
 
 std::size_t SourceTileStore::bytes() const {
   return state_->bytes();
+}
+
+std::optional<Error> SourceTileStore::lastFailure(const TileService& service) const {
+  return state_->lastFailure(service);
 }
 
 std::size_t SourceTileStore::pending() const {

@@ -61,9 +61,15 @@ class SourceTileStore {
   };
   [[nodiscard]] std::unique_ptr<Want> want(Request request);
 
+  /// For what else a service has to be asked.
+  [[nodiscard]] const std::shared_ptr<Fetcher>& fetcher() const;
+
   void setBudget(std::size_t bytes);
   /// Of all decoded tiles.
   [[nodiscard]] std::size_t bytes() const;
+  /// Of a service whose tiles wait for a server that has failed and is asked again: why. The very service that was
+  /// given in a Request.
+  [[nodiscard]] std::optional<Error> lastFailure(const TileService& service) const;
   /// Tiles that are being fetched or decoded.
   [[nodiscard]] std::size_t pending() const;
 

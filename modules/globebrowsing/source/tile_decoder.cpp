@@ -4,8 +4,11 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <memory>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -115,7 +118,7 @@ Result<DecodedValues> decodeValues(std::span<const std::uint8_t> bytes, TileForm
   if (!image) {
     return tl::make_unexpected(std::move(image.error()));
   }
-  const ColourTile& tile = image->tile;
+  const DecodedColours& tile = image->tile;
   DecodedValues result{tile.width, tile.height, std::vector<float>(tile.rgba.size() / 4)};
   for (std::size_t i = 0; i < result.values.size(); ++i) {
     result.values[i] = tile.rgba[4 * i + 3] == 0 ? nothing : static_cast<float>(tile.rgba[4 * i]);
@@ -123,7 +126,8 @@ Result<DecodedValues> decodeValues(std::span<const std::uint8_t> bytes, TileForm
   return result;
 }
 
-Result<HeightTile> heightsOfValues(std::span<const std::uint8_t> bytes, TileFormat format, const TileService& service) {
+Result<DecodedHeights> heightsOfValues(std::span<const std::uint8_t> bytes, TileFormat format,
+                                       const TileService& service) {
   auto values = decodeValues(bytes, format, service.where);
   if (!values) {
     return tl::make_unexpected(std::move(values.error()));
@@ -131,19 +135,20 @@ Result<HeightTile> heightsOfValues(std::span<const std::uint8_t> bytes, TileForm
   const double scale = service.heightScale.value_or(values->scale);
   const double offset = service.heightOffset.value_or(values->offset);
   const float absent = service.noData ? static_cast<float>(*service.noData) : nothing;
-  HeightTile tile{values->width, values->height, std::move(values->values)};
+  DecodedHeights tile{values->width, values->height, std::move(values->values)};
   for (float& value : tile.metres) {
     value = value == absent || !std::isfinite(value) ? nothing : static_cast<float>(value * scale + offset);
   }
   return tile;
 }
 
-Result<HeightTile> heightsOfPacked(std::span<const std::uint8_t> bytes, TileFormat format, const TileService& service) {
+Result<DecodedHeights> heightsOfPacked(std::span<const std::uint8_t> bytes, TileFormat format,
+                                       const TileService& service) {
   auto image = decodeImage(bytes, format, service.where);
   if (!image) {
     return tl::make_unexpected(std::move(image.error()));
   }
-  HeightTile tile{image->tile.width, image->tile.height, std::vector<float>(image->tile.rgba.size() / 4)};
+  DecodedHeights tile{image->tile.width, image->tile.height, std::vector<float>(image->tile.rgba.size() / 4)};
   const double scale = service.heightScale.value_or(1.0);
   const double offset = service.heightOffset.value_or(0.0);
   for (std::size_t i = 0; i < tile.metres.size(); ++i) {
@@ -191,10 +196,11 @@ Result<void> checkTileSize(std::int64_t width, std::int64_t height, const std::s
   return {};
 }
 
-Result<ColourTile> decodeColours(std::span<const std::uint8_t> bytes, const TileService& service, std::size_t matrix) {
+Result<DecodedColours> decodeColours(std::span<const std::uint8_t> bytes, const TileService& service,
+                                     std::size_t matrix) {
   const TileFormat format = formatOf(bytes);
   if (format == TileFormat::Unknown) {
-    return withoutImage<ColourTile>(bytes, service);
+    return withoutImage<DecodedColours>(bytes, service);
   }
   auto image = decodeImage(bytes, format, service.where);
   if (!image) {
@@ -207,10 +213,11 @@ Result<ColourTile> decodeColours(std::span<const std::uint8_t> bytes, const Tile
   return std::move(image->tile);
 }
 
-Result<HeightTile> decodeHeights(std::span<const std::uint8_t> bytes, const TileService& service, std::size_t matrix) {
+Result<DecodedHeights> decodeHeights(std::span<const std::uint8_t> bytes, const TileService& service,
+                                     std::size_t matrix) {
   const TileFormat format = formatOf(bytes);
   if (format == TileFormat::Unknown) {
-    return withoutImage<HeightTile>(bytes, service);
+    return withoutImage<DecodedHeights>(bytes, service);
   }
   auto tile = service.encoding == TileEncoding::Image ? heightsOfValues(bytes, format, service)
                                                       : heightsOfPacked(bytes, format, service);
@@ -221,6 +228,31 @@ Result<HeightTile> decodeHeights(std::span<const std::uint8_t> bytes, const Tile
     return tl::make_unexpected(std::move(fits.error()));
   }
   return tile;
+}
+
+Result<SourceTilePointer> decodeTile(const TileService& service, std::size_t matrix, PixelKind kind,
+                                     const Fetched& fetched) {
+  const auto published = [](auto& decoded, auto&& pixels) -> SourceTilePointer {
+    if (decoded.isEmpty()) {
+      return nullptr;
+    }
+    auto tile = std::make_shared<SourceTile>();
+    tile->width = decoded.width;
+    tile->height = decoded.height;
+    pixels(*tile);
+    return tile;
+  };
+  if (kind == PixelKind::Heights) {
+    return decodeHeights(*fetched.body, service, matrix).map([&](DecodedHeights decoded) {
+      return published(decoded, [&](SourceTile& tile) { tile.heights = std::move(decoded.metres); });
+    });
+  }
+  return decodeColours(*fetched.body, service, matrix).map([&](const DecodedColours& decoded) {
+    return published(decoded, [&](SourceTile& tile) {
+      tile.colours.resize(decoded.rgba.size() / sizeof(Rgba));
+      std::memcpy(tile.colours.data(), decoded.rgba.data(), decoded.rgba.size());
+    });
+  });
 }
 
 }  // namespace meridian::globebrowsing

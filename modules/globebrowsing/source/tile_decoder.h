@@ -4,13 +4,14 @@
 #include <span>
 #include <vector>
 
+#include "globebrowsing/source/source_tile.h"
 #include "globebrowsing/source/tile_service.h"
 #include "host/api/error.h"
 
 namespace meridian::globebrowsing {
 
 /// A service's tile as colours: RGBA, 8 bits each, not premultiplied, rows from the north.
-struct ColourTile {
+struct DecodedColours {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgba{};  ///< width * height * 4
@@ -20,7 +21,7 @@ struct ColourTile {
 };
 
 /// A service's tile as heights: metres, rows from the north; not-a-number where there are no data.
-struct HeightTile {
+struct DecodedHeights {
   int width = 0;
   int height = 0;
   std::vector<float> metres{};
@@ -39,13 +40,17 @@ inline constexpr std::int64_t mostTilePixels = std::int64_t{1} << 24;
 /// Empty where the service answers with an exception (OGC XML, ArcGIS JSON, a page in HTML) and isExceptionEmpty says
 /// what that means. Errors: an exception otherwise, quoted; a format that is not read; damaged or truncated data; a
 /// size other than the matrix's; beyond the limits above. No input crashes it. Safe from any thread.
-[[nodiscard]] Result<ColourTile> decodeColours(std::span<const std::uint8_t> bytes, const TileService& service,
-                                               std::size_t matrix);
+[[nodiscard]] Result<DecodedColours> decodeColours(std::span<const std::uint8_t> bytes, const TileService& service,
+                                                   std::size_t matrix);
 
 /// Likewise heights, by service.encoding. Of an Image: band 1 times heightScale plus heightOffset (default: what the
 /// raster says itself, else 1 and 0), not-a-number where noData, the raster's own or its mask say so. Of the packed
 /// ones: not-a-number where alpha is 0 (PackedFloat: where the float is one, or beyond 1e6 metres).
-[[nodiscard]] Result<HeightTile> decodeHeights(std::span<const std::uint8_t> bytes, const TileService& service,
-                                               std::size_t matrix);
+[[nodiscard]] Result<DecodedHeights> decodeHeights(std::span<const std::uint8_t> bytes, const TileService& service,
+                                                   std::size_t matrix);
+
+/// Either of them, for a SourceTileStore: a TileDecoder.
+[[nodiscard]] Result<SourceTilePointer> decodeTile(const TileService& service, std::size_t matrix, PixelKind kind,
+                                                   const Fetched& fetched);
 
 }  // namespace meridian::globebrowsing

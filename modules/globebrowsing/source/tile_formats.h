@@ -16,7 +16,7 @@ enum class TileFormat : std::uint8_t { Jpeg, Png, WebP, Tiff, Gif, Bmp, Lerc, Le
 [[nodiscard]] TileFormat formatOf(std::span<const std::uint8_t> bytes);
 
 struct DecodedImage {
-  ColourTile tile;
+  DecodedColours tile;
   bool hasAlpha = false;
 };
 

@@ -33,6 +33,7 @@ class TiledServiceSource final : public PixelSource {
                                              std::stop_token stop) const override;
   [[nodiscard]] Result<HeightPixels> heights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
                                              std::stop_token stop) const override;
+  [[nodiscard]] std::optional<Error> lastFailure() const override { return store_->lastFailure(*service_); }
   [[nodiscard]] std::unique_ptr<ColourTask> colourTask(const Tiling& tiling, const TileIndex& index,
                                                        const TileLayout& layout) const override;
   [[nodiscard]] std::unique_ptr<HeightTask> heightTask(const Tiling& tiling, const TileIndex& index,

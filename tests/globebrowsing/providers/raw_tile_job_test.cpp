@@ -31,7 +31,8 @@ TileService worldService() {
   return service;
 }
 
-Result<SourceTilePointer> decode(const TileService& /*service*/, PixelKind kind, const Fetched& fetched) {
+Result<SourceTilePointer> decode(const TileService& /*service*/, std::size_t /*matrix*/, PixelKind kind,
+                                 const Fetched& fetched) {
   auto tile = std::make_shared<SourceTile>();
   tile->width = tile->height = 512;
   const std::uint8_t value = fetched.body->front();

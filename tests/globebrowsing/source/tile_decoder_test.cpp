@@ -22,16 +22,16 @@ TileService serviceOfSize(int width, int height) {
   return service;
 }
 
-ColourTile colours(const Bytes& bytes, const TileService& service) {
+DecodedColours colours(const Bytes& bytes, const TileService& service) {
   auto tile = decodeColours(bytes, service, 0);
   EXPECT_TRUE(tile) << (tile ? "" : tile.error().message());
-  return tile ? std::move(*tile) : ColourTile{};
+  return tile ? std::move(*tile) : DecodedColours{};
 }
 
-HeightTile heights(const Bytes& bytes, const TileService& service) {
+DecodedHeights heights(const Bytes& bytes, const TileService& service) {
   auto tile = decodeHeights(bytes, service, 0);
   EXPECT_TRUE(tile) << (tile ? "" : tile.error().message());
-  return tile ? std::move(*tile) : HeightTile{};
+  return tile ? std::move(*tile) : DecodedHeights{};
 }
 
 std::string errorOf(const Bytes& bytes, const TileService& service) {
@@ -97,7 +97,7 @@ TEST(TileDecoder, LosslessColoursComeOutAsTheyWent) {
       SCOPED_TRACE(std::string(driver) + " " + std::to_string(bands));
       Picture picture{driver, 16, 8, bands};
       picture.options = options;
-      const ColourTile tile = colours(makePicture(picture, ramp), serviceOfSize(16, 8));
+      const DecodedColours tile = colours(makePicture(picture, ramp), serviceOfSize(16, 8));
       ASSERT_EQ(tile.rgba.size(), 16U * 8 * 4);
       for (int row = 0; row < 8; ++row) {
         for (int column = 0; column < 16; ++column) {
@@ -123,7 +123,7 @@ TEST(TileDecoder, PalettesAndSixteenBitsBecomeColours) {
   };
   for (const char* driver : {"PNG", "GTiff", "GIF"}) {
     SCOPED_TRACE(driver);
-    const ColourTile tile = colours(makePicture({driver, 16, 8, 1}, ramp, giveTable), serviceOfSize(16, 8));
+    const DecodedColours tile = colours(makePicture({driver, 16, 8, 1}, ramp, giveTable), serviceOfSize(16, 8));
     ASSERT_FALSE(tile.isEmpty());
     EXPECT_EQ(tile.rgba[4], 255 - 8);
     EXPECT_EQ(tile.rgba[5], 8);
@@ -135,7 +135,7 @@ TEST(TileDecoder, PalettesAndSixteenBitsBecomeColours) {
   }
   for (const char* driver : {"PNG", "GTiff"}) {
     Picture picture{driver, 16, 8, 1, GDT_UInt16};
-    const ColourTile tile =
+    const DecodedColours tile =
         colours(makePicture(picture, [](int, int column, int) { return column * 4369.0; }), serviceOfSize(16, 8));
     EXPECT_EQ(tile.rgba[4 * 15], 255) << driver;
     EXPECT_EQ(tile.rgba[4 * 7], 119) << driver;  // 7 * 4369 / 257
@@ -148,7 +148,7 @@ TEST(TileDecoder, JpegIsReadAsGdalReadsIt) {
   const GDALDatasetUniquePtr file = openWithGdal(path);
   const int width = file->GetRasterXSize();
   const int height = file->GetRasterYSize();
-  const ColourTile tile = colours(bytesOf(path), serviceOfSize(width, height));
+  const DecodedColours tile = colours(bytesOf(path), serviceOfSize(width, height));
   std::vector<std::uint8_t> expected(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (std::size_t band = 0; band < 3; ++band) {
     ASSERT_EQ(file->GetRasterBand(static_cast<int>(band) + 1)
@@ -162,7 +162,7 @@ TEST(TileDecoder, JpegIsReadAsGdalReadsIt) {
   }
   // Grey, and the four inks of printers.
   for (const int bands : {1, 4}) {
-    const ColourTile made =
+    const DecodedColours made =
         colours(makePicture({"JPEG", 16, 8, bands}, [](int, int, int) { return 200; }), serviceOfSize(16, 8));
     EXPECT_FALSE(made.isEmpty()) << bands;
     if (bands == 1) {
@@ -178,7 +178,7 @@ TEST(TileDecoder, NoDataIsTransparentWhereTheServiceSaysSo) {
   service.noData = 0.0;
   EXPECT_EQ(colours(bytes, service).rgba[3], 255);
   service.isNoDataTransparent = true;
-  const ColourTile tile = colours(bytes, service);
+  const DecodedColours tile = colours(bytes, service);
   EXPECT_EQ(tile.rgba[3], 0);
   EXPECT_EQ(tile.rgba[7], 255);  // (0, 1, 2) is a colour
 }
@@ -186,24 +186,24 @@ TEST(TileDecoder, NoDataIsTransparentWhereTheServiceSaysSo) {
 TEST(TileDecoder, HeightsOfRasters) {
   const auto value = [](int, int column, int row) { return column == 0 ? -9999.0 : 1000.5 + column - row; };
   TileService service = serviceOfSize(16, 8);
-  const HeightTile floats = heights(makePicture({"GTiff", 16, 8, 1, GDT_Float32}, value), service);
+  const DecodedHeights floats = heights(makePicture({"GTiff", 16, 8, 1, GDT_Float32}, value), service);
   ASSERT_FALSE(floats.isEmpty());
   EXPECT_FLOAT_EQ(floats.metres[1], 1001.5F);
   EXPECT_FLOAT_EQ(floats.metres[0], -9999.0F);
-  const HeightTile own = heights(makePicture({"GTiff", 16, 8, 1, GDT_Float32}, value,
-                                             [](GDALDataset& d) { d.GetRasterBand(1)->SetNoDataValue(-9999); }),
-                                 service);
+  const DecodedHeights own = heights(makePicture({"GTiff", 16, 8, 1, GDT_Float32}, value,
+                                                 [](GDALDataset& d) { d.GetRasterBand(1)->SetNoDataValue(-9999); }),
+                                     service);
   EXPECT_TRUE(std::isnan(own.metres[0]));
   service.noData = -9999;
   service.heightScale = 0.5;
   service.heightOffset = 10.0;
-  const HeightTile told = heights(makePicture({"GTiff", 16, 8, 1, GDT_Int16}, value), service);
+  const DecodedHeights told = heights(makePicture({"GTiff", 16, 8, 1, GDT_Int16}, value), service);
   EXPECT_TRUE(std::isnan(told.metres[0]));
   EXPECT_NEAR(told.metres[17], 1000.5 / 2 + 10, 0.3);
   service = serviceOfSize(16, 8);
-  const HeightTile wide = heights(makePicture({"PNG", 16, 8, 1, GDT_UInt16}, ramp), service);
+  const DecodedHeights wide = heights(makePicture({"PNG", 16, 8, 1, GDT_UInt16}, ramp), service);
   EXPECT_FLOAT_EQ(wide.metres[2], 15.0F);
-  const HeightTile grey = heights(makePicture({"PNG", 16, 8, 1}, ramp), service);
+  const DecodedHeights grey = heights(makePicture({"PNG", 16, 8, 1}, ramp), service);
   EXPECT_FLOAT_EQ(grey.metres[2], 15.0F);
 }
 
@@ -252,7 +252,7 @@ TEST(TileDecoder, Lerc) {
   const std::string image = sharedData("tiles/lerc/bluemarble_256_256_3_byte.lerc2");
   const std::string world = sharedData("tiles/lerc/world.lerc1");
   MERIDIAN_NEEDS(image);
-  const ColourTile tile = colours(bytesOf(image), serviceOfSize(256, 256));
+  const DecodedColours tile = colours(bytesOf(image), serviceOfSize(256, 256));
   ASSERT_FALSE(tile.isEmpty());
   double sum = 0;
   for (const std::uint8_t value : tile.rgba) {
@@ -271,7 +271,7 @@ TEST(TileDecoder, Lerc) {
   unsigned int size = 0;
   ASSERT_EQ(lerc_encode(values.data(), 6, 1, 16, 8, 1, 1, valid.data(), 0.0, blob.data(), 65536, &size), 0U);
   blob.resize(size);
-  const HeightTile made = heights(blob, serviceOfSize(16, 8));
+  const DecodedHeights made = heights(blob, serviceOfSize(16, 8));
   ASSERT_EQ(made.metres.size(), values.size());
   EXPECT_TRUE(std::isnan(made.metres[3]));
   EXPECT_FLOAT_EQ(made.metres[100], values[100]);

@@ -58,7 +58,8 @@ struct Texel {
   Rgba colour;
 };
 
-inline Result<SourceTilePointer> decodeTexels(const TileService& /*service*/, PixelKind kind, const Fetched& fetched) {
+inline Result<SourceTilePointer> decodeTexels(const TileService& /*service*/, std::size_t /*matrix*/, PixelKind kind,
+                                              const Fetched& fetched) {
   const auto count = fetched.body->size() / sizeof(Texel);
   const int side = static_cast<int>(std::lround(std::sqrt(count)));
   if (static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * sizeof(Texel) != fetched.body->size()) {

@@ -1,0 +1,159 @@
+// Layers whose tiles a server has, on the screen; and what map servers offer.
+#include <fstream>
+
+#include <gmock/gmock.h>
+
+#include "globe_fixture.h"
+#include "globebrowsing/globe_services.h"
+#include "support/nginx_server.h"
+#include "support/server_process.h"
+#include "support/world_raster.h"
+
+namespace meridian::globebrowsing {
+namespace {
+
+using testing::HasSubstr;
+
+class MapServiceTest : public GlobeTest {
+ protected:
+  void SetUp() override {
+    GlobeTest::SetUp();
+    if (graphics_) {
+      WorldRaster::write(folder_ / "world.tif");
+    }
+  }
+  [[nodiscard]] std::vector<std::uint8_t> picture() const {
+    std::vector<std::uint8_t> rgba(std::size_t{4} * width * height);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target_->framebuffer());
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    return rgba;
+  }
+  std::vector<std::uint8_t> pictureOf(const std::string& filePath) {
+    addGlobe({{"ColorLayers", listOf({fileLayer("World", filePath)})}});
+    EXPECT_TRUE(settle());
+    std::vector<std::uint8_t> rgba = picture();
+    removeGlobes();
+    return rgba;
+  }
+  static int difference(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+    int greatest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      greatest = std::max(greatest, std::abs(int{a[i]} - int{b[i]}));
+    }
+    return greatest;
+  }
+};
+
+TEST_F(MapServiceTest, AServicesPictureIsThatOfTheFile) {
+  if (!NginxServer::isInstalled()) {
+    GTEST_SKIP() << "nginx is not installed; install nginx-light";
+  }
+  NginxServer server;
+  WorldRaster::cut(folder_ / "world.tif", server.root());
+  const std::vector<std::uint8_t> expected = pictureOf((folder_ / "world.tif").string());
+  EXPECT_LE(difference(pictureOf(WorldRaster::document(server.http1())), expected), 3);
+  EXPECT_THAT(server.accessLog(), HasSubstr(" 200 /1/"));
+}
+
+TEST_F(MapServiceTest, TheViewWaitsForAServerThatIsDown) {
+  WorldRaster::cut(folder_ / "world.tif", folder_ / "tiles");
+  const int port = freePort();
+  auto& globe =
+      addGlobe({{"ColorLayers",
+                 listOf({fileLayer("World", WorldRaster::document("http://127.0.0.1:" + std::to_string(port)))})}});
+  for (int i = 0; i < 200; ++i) {
+    frame();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_NE(unsettled(), "");
+  const StringProperty& lastError = globe.layers().group(LayerGroupId::ColorLayers).find("World")->lastError;
+  EXPECT_THAT(lastError.get(), HasSubstr(std::to_string(port)));
+  EXPECT_EQ(globe.layers().group(LayerGroupId::ColorLayers).find("World")->status.get(), "ready");
+  const ServerProcess server(ServerProcess::fileServer((folder_ / "tiles").string(), port), port);
+  EXPECT_TRUE(settle());
+  for (int i = 0; i < 40; ++i) {
+    frame();
+  }
+  EXPECT_EQ(lastError.get(), "");
+  const Pixel seen = centre();
+  for (int band = 0; band < 3; ++band) {
+    EXPECT_NEAR(seen[static_cast<std::size_t>(band)], WorldRaster::value(band, 0.2, 0.1), 4) << band;
+  }
+}
+
+/// Of the module's services, without graphics.
+class CapabilitiesLoaderTest : public testing::Test {
+ protected:
+  CapabilitiesLoaderTest() {
+    std::string name = (std::filesystem::temp_directory_path() / "meridian-capabilities-XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+    std::ofstream(folder_ / "tilemapresource.xml")
+        << R"(<TileMap version="1.0.0"><Title>The world</Title><SRS>EPSG:4326</SRS>
+              <BoundingBox minx="-180" miny="-90" maxx="180" maxy="90"/><Origin x="-180" y="-90"/>
+              <TileFormat width="256" height="256" mime-type="image/png" extension="png"/>
+              <TileSets profile="global-geodetic"><TileSet href="0" units-per-pixel="0.703125" order="0"/>
+              <TileSet href="1" units-per-pixel="0.3515625" order="1"/></TileSets></TileMap>)";
+    servers_.setLoader([this](const MapServer& server, CapabilitiesLoader::Done done) {
+      services_.capabilities().load(server, std::move(done));
+    });
+  }
+  ~CapabilitiesLoaderTest() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  MapServers::Offer offered(const std::string& url) {
+    servers_.add({"Server", "Earth", url});
+    for (MapServers::Offer offer = servers_.offered("Server");; offer = servers_.offered("Server")) {
+      if (offer || offer.error().what.find("not arrived yet") == std::string::npos) {
+        return offer;
+      }
+      services_.capabilities().deliver();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+
+  std::filesystem::path folder_;
+  PropertyOwner owner_{"GlobeBrowsing", "Globe browsing", ""};
+  Statistics statistics_;
+  MapServers servers_;
+  GlobeServices services_{owner_, statistics_, std::filesystem::path()};
+};
+
+TEST_F(CapabilitiesLoaderTest, AServerOffersWhatAnAssetCanName) {
+  const int port = freePort();
+  const ServerProcess server(ServerProcess::fileServer(folder_.string(), port), port);
+  const std::string address = "http://127.0.0.1:" + std::to_string(port);
+  const MapServers::Offer offer = offered(address + "/tilemapresource.xml");
+  ASSERT_TRUE(offer) << offer.error().message();
+  ASSERT_EQ(offer->size(), 1U);
+  EXPECT_EQ(offer->front().name, "The world");
+  EXPECT_THAT(offer->front().url, HasSubstr("<GDAL_WMS>"));
+  EXPECT_THAT(offer->front().url, HasSubstr(address));
+}
+
+TEST_F(CapabilitiesLoaderTest, CapabilitiesMayLieInAFile) {
+  const MapServers::Offer offer = offered((folder_ / "tilemapresource.xml").string());
+  ASSERT_TRUE(offer) << offer.error().message();
+  EXPECT_EQ(offer->size(), 1U);
+  EXPECT_FALSE(services_.fetcher()->hasStarted());
+}
+
+TEST_F(CapabilitiesLoaderTest, SaysWhyThereAreNone) {
+  std::ofstream(folder_ / "page.html") << "<html><body>moved</body></html>";
+  EXPECT_FALSE(offered((folder_ / "page.html").string()));
+  EXPECT_FALSE(offered((folder_ / "missing.xml").string()));
+  const MapServers::Offer offer = offered("http://127.0.0.1:" + std::to_string(freePort()) + "/capabilities.xml");
+  ASSERT_FALSE(offer);
+  EXPECT_THAT(offer.error().message(), HasSubstr("127.0.0.1"));
+}
+
+TEST_F(CapabilitiesLoaderTest, TheCacheOfTheNetworkIsSetByProperties) {
+  EXPECT_TRUE(services_.networkCacheMode.set(Value("cache-only")));
+  EXPECT_EQ(services_.networkCacheMode.word(), "cache-only");
+  const MapServers::Offer offer = offered("http://127.0.0.1:" + std::to_string(freePort()) + "/capabilities.xml");
+  ASSERT_FALSE(offer);
+  EXPECT_THAT(offer.error().message(), testing::Not(HasSubstr("connect")));
+}
+
+}  // namespace
+}  // namespace meridian::globebrowsing
