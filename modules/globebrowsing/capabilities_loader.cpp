@@ -39,10 +39,13 @@ MapServers::Offer offerOf(const Fetched& document, const MapServer& server) {
 
 }  // namespace
 
-/// What a worker found.
-struct CapabilitiesLoader::Outcome {
+/// What workers do for a load: they begin the fetch, since the first of a program opens the cache on disk, and read
+/// what it brings.
+struct CapabilitiesLoader::Work {
   std::mutex mutex;
   std::optional<MapServers::Offer> offer;
+  std::unique_ptr<PendingFetch> fetch;
+  bool isGivenUp = false;
 
   void put(MapServers::Offer found) {
     const std::lock_guard lock(mutex);
@@ -52,37 +55,68 @@ struct CapabilitiesLoader::Outcome {
     const std::lock_guard lock(mutex);
     return std::exchange(offer, std::nullopt);
   }
+  void hold(std::unique_ptr<PendingFetch> begun) {
+    const std::lock_guard lock(mutex);
+    if (!isGivenUp) {
+      fetch.swap(begun);
+    }
+  }
+  void giveUp() {
+    std::unique_ptr<PendingFetch> cancelled;  // under no lock: it may wait for what takes the lock
+    const std::lock_guard lock(mutex);
+    isGivenUp = true;
+    cancelled.swap(fetch);
+  }
 };
 
+CapabilitiesLoader::~CapabilitiesLoader() {
+  for (const Load& load : loads_) {
+    if (load.work != nullptr) {
+      load.work->giveUp();
+    }
+  }
+}
+
 void CapabilitiesLoader::load(const MapServer& server, Done done) {
-  loads_.push_back({server, std::move(done), nullptr, {}, nullptr});
+  loads_.push_back({server, std::move(done), nullptr, {}});
 }
 
 void CapabilitiesLoader::begin(Load& load) {
-  load.outcome = std::make_shared<Outcome>();
+  load.work = std::make_shared<Work>();
   load.end = std::chrono::steady_clock::now() + longestWait;
-  const MapServer& server = load.server;
-  if (!isWebAddress(server.url)) {
-    workers_.post([outcome = load.outcome, server](const std::stop_token&) {
-      outcome->put(readDocumentFile(server.url).and_then([&](const Fetched& read) { return offerOf(read, server); }));
-    });
-    return;
-  }
+  workers_.post(
+      [&workers = workers_, work = load.work, server = load.server, fetcher = fetcher_](const std::stop_token&) {
+        if (isWebAddress(server.url)) {
+          work->hold(fetchFor(workers, work, server, fetcher));
+        } else {
+          work->put(readDocumentFile(server.url).and_then([&](const Fetched& read) { return offerOf(read, server); }));
+        }
+      });
+}
+
+std::unique_ptr<PendingFetch> CapabilitiesLoader::fetchFor(WorkerPool& workers, const std::shared_ptr<Work>& work,
+                                                           const MapServer& server,
+                                                           const std::shared_ptr<Fetcher>& fetcher) {
   FetchRequest request;
   request.url = server.url;
   request.priority = documentPriority;
   request.maximumBytes = largestDocument;
   request.emptyStatuses = {};
   request.isPatient = false;
-  // The fetcher only weakly: it holds this function.
-  load.fetch = fetcher_->fetch(request, [&workers = workers_, outcome = load.outcome, server, request,
-                                         weak = std::weak_ptr(fetcher_)](Result<Fetched> answer) {
-    workers.post([outcome, server, request, weak, answer = std::move(answer)](const std::stop_token&) {
-      MapServers::Offer offer = answer ? offerOf(*answer, server) : tl::make_unexpected(answer.error());
-      if (const std::shared_ptr<Fetcher> fetcher = weak.lock(); fetcher != nullptr && offer) {
-        fetcher->accept(request, *answer);
+  // Weakly: the fetcher holds this function, and so does what the work holds.
+  return fetcher->fetch(request, [&workers, weakWork = std::weak_ptr(work), server, request,
+                                  weakFetcher = std::weak_ptr(fetcher)](Result<Fetched> answer) {
+    workers.post([weakWork, server, request, weakFetcher, answer = std::move(answer)](const std::stop_token&) {
+      const std::shared_ptr<Work> still = weakWork.lock();
+      const std::shared_ptr<Fetcher> fetcherOfIt = weakFetcher.lock();
+      if (still == nullptr || fetcherOfIt == nullptr) {
+        return;
       }
-      outcome->put(std::move(offer));
+      MapServers::Offer offer = answer ? offerOf(*answer, server) : tl::make_unexpected(answer.error());
+      if (offer) {
+        fetcherOfIt->accept(request, *answer);
+      }
+      still->put(std::move(offer));
     });
   });
 }
@@ -95,15 +129,16 @@ void CapabilitiesLoader::deliver() {
   std::vector<Load> open;
   std::vector<std::pair<Done, MapServers::Offer>> found;
   for (Load& load : loads_) {
-    if (load.outcome == nullptr) {
+    if (load.work == nullptr) {
       begin(load);
     }
-    std::optional<MapServers::Offer> offer = load.outcome->take();
+    std::optional<MapServers::Offer> offer = load.work->take();
     if (!offer && now >= load.end) {
       offer = failure("the capabilities did not arrive within 15 seconds", load.server.url,
                       "check the server, or try again");
     }
     if (offer) {
+      load.work->giveUp();
       found.emplace_back(std::move(load.done), std::move(*offer));
     } else {
       open.push_back(std::move(load));

@@ -22,6 +22,9 @@ class CapabilitiesLoader {
   /// The workers outlive the loader, and what the fetcher calls.
   CapabilitiesLoader(WorkerPool& workers, std::shared_ptr<Fetcher> fetcher)
       : workers_(workers), fetcher_(std::move(fetcher)) {}
+  CapabilitiesLoader(const CapabilitiesLoader&) = delete;
+  CapabilitiesLoader& operator=(const CapabilitiesLoader&) = delete;
+  ~CapabilitiesLoader();
 
   /// Begins with the next deliver(), so that where no frame is drawn (--validate) nobody is asked. `done` is called by
   /// a later one, within longestWait; not at all once the loader is gone.
@@ -30,15 +33,17 @@ class CapabilitiesLoader {
   void deliver();
 
  private:
-  struct Outcome;
+  struct Work;
   struct Load {
     MapServer server;
     Done done;
-    std::shared_ptr<Outcome> outcome;  ///< null until it has begun
+    std::shared_ptr<Work> work;  ///< null until it has begun
     std::chrono::steady_clock::time_point end;
-    std::unique_ptr<PendingFetch> fetch;
   };
   void begin(Load& load);
+  [[nodiscard]] static std::unique_ptr<PendingFetch> fetchFor(WorkerPool& workers, const std::shared_ptr<Work>& work,
+                                                              const MapServer& server,
+                                                              const std::shared_ptr<Fetcher>& fetcher);
 
   WorkerPool& workers_;
   std::shared_ptr<Fetcher> fetcher_;

@@ -153,6 +153,7 @@ void Layer::restart() {
   attachProvider();
   seenState_ = TileProvider::State::NotOpened;
   seenError_ = nullptr;
+  seenFailure_.clear();
   status.put(std::string(stateName(seenState_)));
   lastError.put({});
   changed_(*this, Change::Settings);
@@ -179,7 +180,7 @@ void Layer::play(const Time& now) {
   }
   const bool isFirst = step_ == nullptr;
   step_ = player_.current();
-  lastError.put(player_.error());
+  lastError.put(player_.error().empty() ? seenFailure_ : player_.error());
   // Colours of another step are composed beside those that are drawn, and exchanged; heights are composed anew.
   if (isFirst || group_ == LayerGroupId::HeightLayers) {
     changed_(*this, Change::Settings);
