@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <ctime>
-#include <limits>
 #include <random>
 #include <string>
 #include <thread>
@@ -17,93 +15,12 @@
 #include <signal.h>
 
 #include "globebrowsing/network/cache_worker.h"
-#include "globebrowsing/network/delivery.h"
+#include "globebrowsing/network/http_flight.h"
 #include "globebrowsing/network/http_transfers.h"
 #include "globebrowsing/network/mailbox.h"
 #include "globebrowsing/network/negative_cache.h"
-#include "globebrowsing/network/request_queue.h"
-#include "globebrowsing/network/web_address.h"
 
 namespace meridian::globebrowsing {
-
-/// Of an answer that may be accepted: what goes onto disk with its body.
-struct AnswerOrigin {
-  std::string key;
-  int status = 0;
-  AnswerFacts facts{};
-  mutable std::atomic<bool> isAccepted{false};  ///< requests that shared a transfer share this
-};
-
-namespace {
-
-/// The status that a rejected address answers with from then on.
-constexpr int nothingHere = 204;
-
-/// One call of fetch.
-struct Waiter {
-  Waiter(Fetcher::Done done, double wanted) : delivery(std::move(done)), priority(wanted) {}
-
-  Delivery delivery;
-  std::atomic<double> priority;
-  std::atomic<bool> isRenewed{false};  ///< a task that looks at the new priority is on its way
-  RequestQueue::Id flight = 0;         ///< the network thread's; 0 while there is none
-};
-
-/// Requests that may share a transfer and its answer.
-struct Flight {
-  FetchRequest request;
-  WebAddress address{};
-  std::string key{};       ///< in the caches
-  std::string identity{};  ///< in `flightOf`
-  std::vector<std::shared_ptr<Waiter>> waiters{};
-  std::optional<CachedAnswer> kept{};  ///< past its lifetime
-  bool isQueued = false;               ///< else it waits for the cache
-  int attempts = 0;
-};
-
-/// In the order of greatness, whatever it is.
-double orderable(double priority) {
-  return std::isnan(priority) ? -std::numeric_limits<double>::infinity() : priority;
-}
-
-double greatestPriority(const Flight& flight) {
-  double greatest = -std::numeric_limits<double>::infinity();
-  for (const auto& waiter : flight.waiters) {
-    greatest = std::max(greatest, waiter->priority.load());
-  }
-  return greatest;
-}
-
-std::string cacheKey(const WebAddress& address, const FetchRequest& request) {
-  std::string key = address.url;
-  for (const std::string& header : request.headers) {
-    key += '\n' + header;
-  }
-  return key;
-}
-
-std::string identityOf(const std::string& key, const FetchRequest& request) {
-  std::string identity = key + '\n' + std::to_string(request.maximumBytes) + (request.isPatient ? "" : " !");
-  for (const int status : request.emptyStatuses) {
-    identity += ' ' + std::to_string(status);
-  }
-  return identity;
-}
-
-bool isEmptyStatus(const FetchRequest& request, int status) {
-  return status == nothingHere ||
-         std::find(request.emptyStatuses.begin(), request.emptyStatuses.end(), status) != request.emptyStatuses.end();
-}
-
-std::string contentTypeOf(const AnswerFacts& facts) {
-  return std::string(facts.fields.find("Content-Type").value_or(""));
-}
-
-Fetched fetchedFromCache(const CachedAnswer& kept, bool isStale) {
-  return {.contentType = contentTypeOf(kept.facts), .body = kept.body, .isFromCache = true, .isStale = isStale};
-}
-
-}  // namespace
 
 /// What the network thread owns and does. The functions of the first part are for any thread.
 class HttpFetcher::Engine {
