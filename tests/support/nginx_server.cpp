@@ -1,60 +1,19 @@
 #include "support/nginx_server.h"
 
-#include <cerrno>
-#include <chrono>
-#include <csignal>
-#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
-#include <thread>
+#include <vector>
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/prctl.h>
-#include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 namespace meridian {
 
 namespace {
 
-/// A proxy that the machine may have is not for servers on loopback. Set before there are threads.
-[[maybe_unused]] const int isWithoutProxy = ::setenv("no_proxy", "127.0.0.1,localhost", 1);
-
 namespace fs = std::filesystem;
-
-sockaddr_in loopback(int port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  return address;
-}
-
-int freePort() {
-  const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address = loopback(0);
-  socklen_t size = sizeof address;
-  const bool isBound = ::bind(listener, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
-                       ::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size) == 0;
-  ::close(listener);
-  if (!isBound) {
-    throw std::runtime_error("no free port");
-  }
-  return ntohs(address.sin_port);
-}
-
-bool answers(int port) {
-  const int connection = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const sockaddr_in address = loopback(port);
-  const bool isOpen = ::connect(connection, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  ::close(connection);
-  return isOpen;
-}
 
 void run(const std::string& command) {
   if (std::system(command.c_str()) != 0) {
@@ -93,8 +52,7 @@ NginxServer::NginxServer() {
 }
 
 NginxServer::~NginxServer() {
-  ::kill(process_, SIGTERM);
-  ::waitpid(process_, nullptr, 0);
+  process_.reset();
   std::error_code ignored;
   fs::remove_all(folder_, ignored);
 }
@@ -141,24 +99,12 @@ void NginxServer::start() {
   const std::string configuration = prefix + "nginx.conf";
   const std::string errors = prefix + "error.log";
   // root and the log files are taken from the prefix, certificates from the configuration's folder.
-  process_ = ::fork();
-  if (process_ == 0) {
-    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-    ::execl("/usr/sbin/nginx", "nginx", "-p", prefix.c_str(), "-c", configuration.c_str(), "-e", errors.c_str(),
-            static_cast<char*>(nullptr));
-    ::_exit(127);
+  try {
+    process_ = std::make_unique<ServerProcess>(
+        std::vector<std::string>{"/usr/sbin/nginx", "-p", prefix, "-c", configuration, "-e", errors}, ports_[3]);
+  } catch (const std::runtime_error&) {
+    throw std::runtime_error("nginx does not start: " + contents(errors));
   }
-  for (int i = 0; i < 1000; ++i) {
-    if (::waitpid(process_, nullptr, WNOHANG) != 0) {
-      break;
-    }
-    if (answers(ports_[3])) {
-      return;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  ::kill(process_, SIGKILL);
-  throw std::runtime_error("nginx does not start: " + contents(errors));
 }
 
 std::string NginxServer::accessLog() const {

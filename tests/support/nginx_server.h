@@ -1,9 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
-#include <sys/types.h>
+#include "support/server_process.h"
 
 namespace meridian {
 
@@ -41,7 +42,7 @@ class NginxServer {
 
   std::filesystem::path folder_;
   int ports_[4]{};
-  pid_t process_ = -1;
+  std::unique_ptr<ServerProcess> process_;
 };
 
 }  // namespace meridian
