@@ -253,7 +253,8 @@ bool CompositeStore::anyFiner(CompositeKind kind, const Generation& generation, 
 
 bool CompositeStore::isFiner(const Layer& layer, const LayerStepPointer& step, const TileIndex& index) const {
   if (isRelief(layer.sampling())) {
-    return relief_.hasFiner(index);
+    // Lines are as thin as the composite lets them be, however coarse the heights are.
+    return layer.sampling() == Sampling::Isolines ? index.level < maximumLevel : relief_.hasFiner(index);
   }
   return isTile(layer) && step != nullptr && step->tiles()->hasFinerColours(*tiling_, index);
 }
@@ -381,8 +382,11 @@ bool CompositeStore::gatherPart(CompositionPart& part, const LayerStepPointer& s
   if (!colourHeights && (!isTile(*part.layer) || step == nullptr)) {
     return true;
   }
+  const auto hasFinerData = [&](const TileIndex& tile) {
+    return colourHeights ? relief_.hasFiner(tile) : step->tiles()->hasFinerColours(*tiling_, tile);
+  };
   TileIndex index = key.index;
-  while (index.level > 0 && !isFiner(*part.layer, step, *tiling_->parent(index))) {
+  while (index.level > 0 && !hasFinerData(*tiling_->parent(index))) {
     part.transform = part.transform.then(tiling_->inParent(index));
     index = *tiling_->parent(index);
   }

@@ -146,6 +146,7 @@ class CompositeStore {
 
   [[nodiscard]] const Facts& facts(const TileIndex& index) const;
   [[nodiscard]] bool anyFiner(CompositeKind kind, const Generation& generation, const TileIndex& index) const;
+  /// Whether that layer shows more in composites that are finer than the tile's.
   [[nodiscard]] bool isFiner(const Layer& layer, const LayerStepPointer& step, const TileIndex& index) const;
   [[nodiscard]] CompositeKey shownKey(CompositeKind kind, const TileIndex& index, int colourLevel) const;
   [[nodiscard]] CompositeKey nextKey(CompositeKind kind, const TileIndex& index, int colourLevel) const;
