@@ -25,10 +25,10 @@ namespace meridian::globebrowsing {
 struct CompositionPart {
   const Layer* layer = nullptr;
   const ColourTile* tile = nullptr;    ///< null: the layer has nothing there, or needs no tile
-  const ReliefTile* relief = nullptr;  ///< of layers that colour heights
-  TileKey key;                         ///< of that tile
+  TileKey key;                         ///< of that tile, or of `relief`
   UnitSquareTransform transform;       ///< the composite's unit square in that tile's
-  double pixelMetres = 0.0;            ///< of the composite; for layers that colour heights
+  const ReliefTile* relief = nullptr;  ///< of layers that colour heights
+  double pixelMetres = 0.0;            ///< of the composite; for those
 };
 
 /// Draws composites: the layers of one kind, blended once per tile instead of once per fragment (after Kooima; Bladin &

@@ -1,6 +1,9 @@
 #include "globebrowsing/providers/relief_provider.h"
 
+#include <cmath>
 #include <fstream>
+
+#include <glm/geometric.hpp>
 
 #include "provider_fixture.h"
 
