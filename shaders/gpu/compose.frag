@@ -41,7 +41,15 @@ vec4 reliefColour(Layer layer, int sampling, Placement placement, vec3 place) {
     if (sampling == samplingHillshade) {
         return vec4(hillshade(layer.relief, normal), 1.0);
     }
-    return vec4(layer.colour, isolineCoverage(layer.relief, height, slopeOf(normal), placement.pixel));
+    // Along rows and columns, so half as far again as across a line that runs between them.
+    vec2 reach = 0.75 * (layer.relief.y + 1.0) * placement.transform.zw;
+    vec4 beside = vec4(textureLod(reliefHeights, place + vec3(reach.x, 0.0, 0.0), 0.0).x,
+                       textureLod(reliefHeights, place - vec3(reach.x, 0.0, 0.0), 0.0).x,
+                       textureLod(reliefHeights, place + vec3(0.0, reach.y, 0.0), 0.0).x,
+                       textureLod(reliefHeights, place - vec3(0.0, reach.y, 0.0), 0.0).x);
+    vec2 around = vec2(min(height, min(min(beside.x, beside.y), min(beside.z, beside.w))),
+                       max(height, max(max(beside.x, beside.y), max(beside.z, beside.w))));
+    return vec4(layer.colour, isolineCoverage(layer.relief, height, around, slopeOf(normal), placement.pixel));
 }
 
 vec4 composePart(vec4 below, int i, int sampling, int mode, int adjustment) {

@@ -14,16 +14,21 @@ vec3 hillshade(vec4 parameters, vec2 normal) {
     return vec3((1.0 + 254.0 * max(lit, 0.0)) / 255.0);
 }
 
-// How much of a pixel the line covers; `pixel`: metres. Where nothing rises there is no line, whatever the height, and
-// where lines are so close that nobody could tell them apart they fade.
-float isolineCoverage(vec4 parameters, float height, float slope, float pixel) {
+// How much of a pixel the line covers; `around`: the least and the greatest height as far away as a line reaches;
+// `pixel`: metres. Where nothing rises there is no line, whatever the height, nor where a slope ends before it gets
+// there; and where lines are so close that nobody could tell them apart they fade.
+float isolineCoverage(vec4 parameters, float height, vec2 around, float slope, float pixel) {
     float rise = slope * pixel;
     if (rise < 1e-6 * (1.0 + abs(height))) {
         return 0.0;
     }
     float interval = parameters.x;
     float width = parameters.y;
-    float distance = abs(height - interval * round(height / interval)) / rise;
+    float line = interval * round(height / interval);
+    if (line < around.x || line > around.y) {
+        return 0.0;
+    }
+    float distance = abs(height - line) / rise;
     float room = interval / (rise * width);
     return parameters.z * clamp(0.5 * (width + 1.0) - distance, 0.0, 1.0) * clamp(room - 1.0, 0.0, 1.0);
 }

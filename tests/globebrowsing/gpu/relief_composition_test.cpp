@@ -155,7 +155,8 @@ TEST_F(ReliefCompositionTest, ColorReliefIsGdaldems) {
 }
 
 TEST_F(ReliefCompositionTest, IsolinesAreWhereHeightsAreMultiplesOfTheInterval) {
-  constexpr double interval = 50.0;
+  // Not a whole number: this model has whole metres, and whole plains would lie at a line's very height.
+  constexpr double interval = 47.3;
   const std::vector<std::uint8_t> found = compose(
       {{"Type", "Isolines"}, {"Interval", interval}, {"LineWidth", 1.5}, {"LineColor", Value(glm::dvec3(1, 0, 0))}});
   const auto covered = [&](int column, int row) {
