@@ -41,8 +41,7 @@ vec4 reliefColour(Layer layer, int sampling, Placement placement, vec3 place) {
     if (sampling == samplingHillshade) {
         return vec4(hillshade(layer.relief, normal), 1.0);
     }
-    // Along rows and columns, so half as far again as across a line that runs between them.
-    vec2 reach = 0.75 * (layer.relief.y + 1.0) * placement.transform.zw;
+    vec2 reach = 0.5 * (layer.relief.y + 1.0) * placement.transform.zw;
     vec4 beside = vec4(textureLod(reliefHeights, place + vec3(reach.x, 0.0, 0.0), 0.0).x,
                        textureLod(reliefHeights, place - vec3(reach.x, 0.0, 0.0), 0.0).x,
                        textureLod(reliefHeights, place + vec3(0.0, reach.y, 0.0), 0.0).x,

@@ -15,16 +15,16 @@ layout(location = 0) out vec4 colour;
 
 void main() {
     // Without any composite the grey that composition starts from.
-    float base = baseNormalsScale.x;
+    float base = baseNormalsLayers.x;
     vec3 lit = base < 0.0 ? vec3(0.3) : texture(composites, vec3(baseAndNormals.xy, base)).rgb;
 #if SHADING
-    vec3 normal = vertical;
+    // The normal that filtering gives is not brought back to unit length: light on the mean of normals is the mean of the
+    // light on them.
+    float sun = sunOnEllipsoid;
 #if ACCURATE_NORMALS
-    vec3 texel = texture(normalOffsets, vec3(baseAndNormals.zw, baseNormalsScale.y)).xyz;
-    normal += (texel * (255.0 / 127.0) - 128.0 / 127.0) * baseNormalsScale.z;
+    sun += dot(texture(normalOffsets, vec3(baseAndNormals.zw, baseNormalsLayers.y)).xyz, sunOnOffset.xyz) + sunOnOffset.w;
 #endif
-    normal = normalize(normal);
-    lit *= min(view.ambient + max(dot(normal, view.lightDirection), 0.0), 1.0);
+    lit *= min(view.ambient + max(sun, 0.0), 1.0);
 #if NIGHT
     if (nightOverlayLayers.x >= 0.0) {
         vec4 night = texture(composites, vec3(nightAndOverlay.xy, nightOverlayLayers.x));

@@ -30,8 +30,15 @@ void main() {
     vec4 normals = chunks[gl_DrawIDARB].normals;
     baseAndNormals = vec4(base.xy + base.zw * uv, normals.xy + normals.zw * uv);
     vec4 layers = chunks[gl_DrawIDARB].layers;
-    baseNormalsScale = vec3(layers.x, layers.w, chunks[gl_DrawIDARB].normalScale);
+    baseNormalsLayers = layers.xw;
 #if SHADING
+    sunOnEllipsoid = dot(ellipsoidNormal, view.lightDirection);
+#if ACCURATE_NORMALS
+    vec3 scaled = chunks[gl_DrawIDARB].normalScale / 127.0 * view.lightDirection;
+    sunOnOffset = vec4(255.0 * scaled, -128.0 * (scaled.x + scaled.y + scaled.z));
+#endif
+#endif
+#if NIGHT
     vertical = ellipsoidNormal;
 #endif
 #if NIGHT || OVERLAY

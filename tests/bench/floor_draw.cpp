@@ -35,7 +35,12 @@ double fold(double tiles) {
 }  // namespace
 
 FloorDraw::FloorDraw(SettledGlobe& globe, glm::ivec2 size, const SurfaceFigures& figures)
-    : globe_(globe), size_(size), vertexArray_(graphics::VertexArray::create()), night_(figures.mostlyNight) {
+    : globe_(globe),
+      size_(size),
+      vertexArray_(graphics::VertexArray::create()),
+      night_(figures.mostlyNight),
+      sampling_(quantile(figures.texelDensities, 0.5) <= 1.0 ? Composer::Sampling::Magnified
+                                                             : Composer::Sampling::Plain) {
   makeGrid(figures);
   makeBlocks(figures);
 }
@@ -47,23 +52,28 @@ void FloorDraw::makeGrid(const SurfaceFigures& figures) {
   const int columns = std::max(1, static_cast<int>(std::lround(std::sqrt(cells * extent.x / extent.y))));
   const int rows = std::max(1, static_cast<int>(std::lround(cells / columns)));
   std::vector<FloorVertex> vertices;
-  for (int row = 0; row <= rows; ++row) {
+  std::vector<std::uint32_t> elements;
+  const auto addRow = [&](int row, double density) {
     for (int column = 0; column <= columns; ++column) {
       const glm::dvec2 part(static_cast<double>(column) / columns, static_cast<double>(row) / rows);
-      const glm::dvec2 tiles = part * extent * figures.texelsPerPixel / double{colourLayout.interior};
+      const glm::dvec2 tiles = part * extent * density / double{colourLayout.interior};
       vertices.push_back(
           {{static_cast<float>((2.0 * part.x - 1.0) * share), static_cast<float>((2.0 * part.y - 1.0) * share), 0.5F},
            0.0F,
            {0.0F, 0.0F, 1.0F},
            {static_cast<float>(32.0 * fold(tiles.x)), static_cast<float>(32.0 * fold(tiles.y)), 0.0F}});
     }
-  }
-  std::vector<std::uint32_t> elements;
+  };
+  // Each row of cells has the texel density of its share of the frame's pixels: half-size levels are blended where the
+  // density lies between two, so one density for all would cost another.
   for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      const auto first = static_cast<std::uint32_t>(row * (columns + 1) + column);
-      const auto above = first + static_cast<std::uint32_t>(columns) + 1;
-      elements.insert(elements.end(), {first, first + 1, above + 1, first, above + 1, above});
+    const auto first = static_cast<std::uint32_t>(vertices.size());
+    const double density = quantile(figures.texelDensities, (row + 0.5) / rows);
+    addRow(row, density);
+    addRow(row + 1, density);
+    for (auto column = first; column < first + static_cast<std::uint32_t>(columns); ++column) {
+      const auto above = column + static_cast<std::uint32_t>(columns) + 1;
+      elements.insert(elements.end(), {column, column + 1, above + 1, column, above + 1, above});
     }
   }
   elementCount_ = static_cast<int>(elements.size());
@@ -108,7 +118,7 @@ void FloorDraw::makeBlocks(const SurfaceFigures& figures) {
                       GL_UNSIGNED_BYTE, flat.data());
   // All of it, or what a tile's unit square spans at the frame's density, if the pixels fold over several.
   const double pixels = std::sqrt(static_cast<double>(figures.coveredPixels));
-  const double tiles = pixels * figures.texelsPerPixel / double{colourLayout.interior};
+  const double tiles = pixels * quantile(figures.texelDensities, 0.5) / double{colourLayout.interior};
   const auto share = static_cast<float>(1.0 / std::max(tiles, 1e-3));
   chunk.normals = {0.0F, 0.0F, share, share};
   chunk.layers.w = 0.0F;
@@ -121,7 +131,7 @@ double FloorDraw::frame() {
   renderer.beginFrame();
   renderer.target().bind();
   renderer.target().clear({0.0F, 0.0F, 0.0F, 1.0F});
-  globe_.surface().renderer().bindForDrawing(globe_.surface().tiles(), night_, false);
+  globe_.surface().renderer().bindForDrawing(globe_.surface().tiles(), night_, sampling_);
   glBindVertexArray(vertexArray_.id());
   glBindTextureUnit(chunk_bindings::normalUnit, normals_.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, viewBlock_.id());

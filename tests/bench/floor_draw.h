@@ -6,8 +6,8 @@
 namespace meridian::bench {
 
 /// The least that a frame can cost: its own number of triangles over its own number of pixels, in one draw, with its
-/// own program, array textures, texel density, target, depth format and blit. Its normals come from one image that has
-/// as many as the frame's chunks have together: the same few over and over would never leave the processor's cache.
+/// own program, array textures, texel densities, target, depth format and blit. Its normals come from one image that
+/// has as many as the frame's chunks have together: the same few over and over would never leave the processor's cache.
 class FloorDraw {
  public:
   FloorDraw(SettledGlobe& globe, glm::ivec2 size, const SurfaceFigures& figures);
@@ -29,6 +29,7 @@ class FloorDraw {
   graphics::Buffer chunkBlock_;
   int elementCount_ = 0;
   bool night_ = false;
+  globebrowsing::Composer::Sampling sampling_ = globebrowsing::Composer::Sampling::Plain;
 };
 
 }  // namespace meridian::bench

@@ -64,6 +64,6 @@ int main(int argc, char** argv) {
       median(own) / median(least), median(own), median(least), figures.chunks, figures.triangles,
       figures.skirtTriangles, figures.coveredPixels,
       static_cast<double>(figures.coveredPixels) / static_cast<double>(std::max<std::size_t>(figures.triangles, 1)),
-      figures.texelsPerPixel, figures.mostlyNight, figures.errorPixels);
+      bench::quantile(figures.texelDensities, 0.5), figures.mostlyNight, figures.errorPixels);
   return 0;
 }

@@ -48,6 +48,12 @@ Result<std::unique_ptr<SettledGlobe>> SettledGlobe::create(const std::string& pl
   if (Result<void> loaded = application.load((paths.data / "assets/default.asset").string()); !loaded) {
     return tl::make_unexpected(loaded.error());
   }
+  // One colour and one height layer are what the goals are for.
+  constexpr auto onlyThose =
+      "openspace.setPropertyValueSingle('Scene.Earth.Renderable.Layers.NightLayers.CityLights.Enabled', false)";
+  if (Result<void> set = application.scripts().run(onlyThose, "settled_globe.cpp"); !set) {
+    return tl::make_unexpected(set.error());
+  }
   application.clock().setTime(*Time::fromUtc("2026-06-21T10:00:00"));
   application.scene().evaluate(application.clock().time());
   const auto pose = navigation::geodeticPoseFromText(place);

@@ -111,12 +111,13 @@ std::optional<glm::dvec2> texelAt(SettledGlobe& globe, const View& view, const g
   return std::nullopt;
 }
 
-double texelsPerPixel(SettledGlobe& globe, const View& view) {
+std::vector<double> texelDensities(SettledGlobe& globe, const View& view) {
+  constexpr int across = 12;
   const glm::dvec2 pixel = 2.0 / glm::dvec2(view.size);
   std::vector<double> found;
-  for (int row = -4; row <= 4; ++row) {
-    for (int column = -4; column <= 4; ++column) {
-      const glm::dvec2 clip(column / 4.5, row / 4.5);
+  for (int row = -across; row <= across; ++row) {
+    for (int column = -across; column <= across; ++column) {
+      const glm::dvec2 clip = glm::dvec2(column, row) / (across + 0.5);
       const auto here = texelAt(globe, view, clip);
       const auto right = texelAt(globe, view, clip + glm::dvec2(pixel.x, 0.0));
       const auto above = texelAt(globe, view, clip + glm::dvec2(0.0, pixel.y));
@@ -128,13 +129,18 @@ double texelsPerPixel(SettledGlobe& globe, const View& view) {
     }
   }
   if (found.empty()) {
-    return 1.0;
+    return {1.0};
   }
-  std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2), found.end());
-  return found[found.size() / 2];
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
 }  // namespace
+
+double quantile(const std::vector<double>& ascending, double part) {
+  const auto last = static_cast<double>(ascending.size() - 1);
+  return ascending[static_cast<std::size_t>(std::lround(part * last))];
+}
 
 SurfaceFigures measureSurface(SettledGlobe& globe, glm::ivec2 size) {
   SurfaceFigures figures;
@@ -161,7 +167,7 @@ SurfaceFigures measureSurface(SettledGlobe& globe, glm::ivec2 size) {
     dark += surface != nullptr && !isInDaylight(*surface, view.lightDirection) ? 1 : 0;
   }
   figures.mostlyNight = 2 * dark > globe.surface().selected().size();
-  figures.texelsPerPixel = texelsPerPixel(globe, view);
+  figures.texelDensities = texelDensities(globe, view);
   figures.coveredPixels = coveredPixels(globe, size);
   return figures;
 }

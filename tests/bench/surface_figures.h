@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "settled_globe.h"
 
@@ -12,11 +13,15 @@ struct SurfaceFigures {
   std::size_t triangles = 0;  ///< skirts excluded
   std::size_t skirtTriangles = 0;
   std::size_t coveredPixels = 0;
-  double texelsPerPixel = 1.0;  ///< along a side, median over the picture
-  std::size_t normals = 0;      ///< texels of all chunks' normals, at the level that each is drawn with
-  bool mostlyNight = false;     ///< whether more chunks are drawn with night layers than without
-  double errorPixels = 0.0;     ///< greatest distance on screen from the surface drawn with a grid four times denser
+  /// Texels per pixel along a side, at places all over the picture, ascending; never empty.
+  std::vector<double> texelDensities{1.0};
+  std::size_t normals = 0;   ///< texels of all chunks' normals, at the level that each is drawn with
+  bool mostlyNight = false;  ///< whether more chunks are drawn with night layers than without
+  double errorPixels = 0.0;  ///< greatest distance on screen from the surface drawn with a grid four times denser
 };
+
+/// The value that `part` (0..1) of them are below.
+[[nodiscard]] double quantile(const std::vector<double>& ascending, double part);
 
 [[nodiscard]] SurfaceFigures measureSurface(SettledGlobe& globe, glm::ivec2 size);
 

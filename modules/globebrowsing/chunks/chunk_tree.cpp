@@ -17,7 +17,7 @@ namespace meridian::globebrowsing {
 
 namespace {
 
-constexpr int finestStep = 4;
+constexpr int finestStep = static_cast<int>(SurfaceErrors::steps) - 1;
 /// A tile that this step does not bring within the error splits: large tiles at 4 segments a side, because beyond the
 /// horizon they are culled whole or not at all; others at 8, because small tiles fit uneven relief better than dense
 /// ones: where one peak asks for density, only its own tile gets it, and a chunk costs less than the triangles that it
@@ -83,7 +83,7 @@ class ChunkTree::Implementation {
   void updateBounds(ChunkNode& node);
   [[nodiscard]] Demand demandOn(const ChunkNode& node) const { return views_.demandOn(node.bounds, node.horizonCap); }
   /// Of the tile drawn at that step.
-  [[nodiscard]] double errorPixels(const ChunkNode& node, int step, const Demand& demand) const;
+  [[nodiscard]] static double errorPixels(const ChunkNode& node, int step, const Demand& demand);
   [[nodiscard]] Refinement refinement(const ChunkNode& node, const Demand& demand) const;
   void noteCulled(const ChunkNode& node, const Demand& demand);
   void split(NodeNumber number);
@@ -176,9 +176,9 @@ Refinement ChunkTree::Implementation::refinement(const ChunkNode& node, const De
   return wanted;
 }
 
-double ChunkTree::Implementation::errorPixels(const ChunkNode& node, int step, const Demand& demand) const {
-  return std::max(residency_->geometricError(node.index, step) * demand.error.vertical,
-                  residency_->surfaceDrift(node.index, step) * demand.error.along);
+double ChunkTree::Implementation::errorPixels(const ChunkNode& node, int step, const Demand& demand) {
+  const auto at = static_cast<std::size_t>(step);
+  return std::max(node.errors.vertical[at] * demand.error.vertical, node.errors.along[at] * demand.error.along);
 }
 
 double ChunkTree::Implementation::priority(const Demand& demand, double base) const {
@@ -217,6 +217,7 @@ bool ChunkTree::Implementation::visit(NodeNumber number) {
     noteCulled(node, demand);
     return true;
   }
+  node.errors = residency_->surfaceErrors(node.index);
   const Refinement wanted = refinement(node, demand);
   return wanted.colours || wanted.surface ? visitChildren(number, demand, wanted.colours) : visitTarget(number, demand);
 }
@@ -299,6 +300,7 @@ bool ChunkTree::Implementation::coverByFinerChild(NodeNumber number, bool drawnO
   if (demand.views == 0) {
     return true;
   }
+  node.errors = residency_->surfaceErrors(node.index);
   const bool drawable = stateOf(node) != TileResidency::State::Nothing;
   if (drawable && (!drawnOnly || node.selectedFrame + 1 == frame_)) {
     keep(node);
@@ -329,12 +331,10 @@ void ChunkTree::Implementation::draw(NodeNumber number, const Demand& demand) {
   chunk.colourLevel = node.colourLevel;
   chunk.views = demand.views;
   chunk.distance = demand.distance;
-  for (chunk.step = 0;; ++chunk.step) {
-    chunk.error = residency_->geometricError(node.index, chunk.step);
-    if (chunk.step == finestStep || errorPixels(node, chunk.step, demand) <= settings_.maximumErrorPixels) {
-      break;
-    }
+  while (chunk.step < finestStep && errorPixels(node, chunk.step, demand) > settings_.maximumErrorPixels) {
+    ++chunk.step;
   }
+  chunk.error = node.errors.vertical[static_cast<std::size_t>(chunk.step)];
   keep(node);
   selected_.push_back(chunk);
   numbers_.push_back(number);
@@ -353,8 +353,7 @@ void ChunkTree::Implementation::finish() {
     }
   }
   if (!selected_.empty()) {
-    skirts_.fit(tiling_, pool_, *residency_,
-                {selected_, numbers_, settings_.maximumErrorPixels, 1.0 / views_.finestPixels()});
+    skirts_.fit(tiling_, pool_, {selected_, numbers_, settings_.maximumErrorPixels, 1.0 / views_.finestPixels()});
   }
   std::sort(selected_.begin(), selected_.end(), [](const SelectedChunk& a, const SelectedChunk& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.index < b.index;

@@ -7,6 +7,7 @@
 
 #include "globebrowsing/chunks/chunk_bounds.h"
 #include "globebrowsing/chunks/culling.h"
+#include "globebrowsing/streaming/tile_residency.h"
 
 namespace meridian::globebrowsing {
 
@@ -28,6 +29,7 @@ struct ChunkNode {
   double occluderScale = -1.0;  ///< that horizonCap was made for
   unsigned heightVersion = 0;
   bool bounded = false;
+  SurfaceErrors errors;  ///< while visitedFrame is the current one and it is not culled
   bool hasNeighbours = false;
   std::array<TileIndex, 4> neighbours{};
   std::array<Edge, 4> neighbourEdges{};  ///< of the neighbours, that lie along this node's

@@ -76,7 +76,7 @@ const SkirtFitter::Slot* SkirtFitter::drawnAt(const Tiling& tiling, TileIndex in
   return nullptr;
 }
 
-void SkirtFitter::fit(const Tiling& tiling, NodePool& pool, const TileResidency& residency, const Drawn& drawn) {
+void SkirtFitter::fit(const Tiling& tiling, NodePool& pool, const Drawn& drawn) {
   fill(pool, drawn);
   for (std::size_t i = 0; i < drawn.chunks.size(); ++i) {
     SelectedChunk& chunk = drawn.chunks[i];
@@ -112,7 +112,8 @@ void SkirtFitter::fit(const Tiling& tiling, NodePool& pool, const TileResidency&
       }
       chunk.skirtEdges |= bit;
       other.skirtEdges |= bitOf(node.neighbourEdges[edge]);
-      const double relief = unequal ? residency.geometricError(other.index, 4) : 0.0;
+      const SurfaceErrors& errors = pool[drawn.numbers[static_cast<std::size_t>(slot->chunk)]].errors;
+      const double relief = unequal ? errors.vertical.back() : 0.0;
       chunk.skirt = std::max(chunk.skirt, other.error + relief);
       other.skirt = std::max(other.skirt, chunk.error + relief);
     }

@@ -7,7 +7,6 @@
 
 #include "globebrowsing/chunks/node_pool.h"
 #include "globebrowsing/chunks/selection.h"
-#include "globebrowsing/streaming/tile_residency.h"
 #include "globebrowsing/tiling/tiling.h"
 
 namespace meridian::globebrowsing {
@@ -35,7 +34,7 @@ class SkirtFitter {
     double allowedPixels = 0.5;
     double metresPerPixel = 0.0;
   };
-  void fit(const Tiling& tiling, NodePool& pool, const TileResidency& residency, const Drawn& drawn);
+  void fit(const Tiling& tiling, NodePool& pool, const Drawn& drawn);
 
  private:
   struct Slot {

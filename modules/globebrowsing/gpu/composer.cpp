@@ -138,13 +138,40 @@ class TargetRestorer {
   std::array<GLint, 4> viewport_{};
 };
 
+/// Whether the topmost layer hides all others: then the composite is its tile, and nothing needs blending.
+bool isHidingAll(std::span<const CompositionPart> parts) {
+  if (parts.empty() || parts.back().tile == nullptr) {
+    return false;
+  }
+  const CompositionPart& top = parts.back();
+  return top.tile->isOpaque() && top.transform == UnitSquareTransform{} && top.layer->showsTilesUnchanged();
+}
+
+void upload(const graphics::Texture& array, std::uint32_t slot, const ColourTile& tile) {
+  glTextureSubImage3D(array.id(), 0, 0, 0, static_cast<GLint>(slot), side, side, 1, GL_RGBA, GL_UNSIGNED_BYTE,
+                      tile.pixels().rgba.data());
+}
+
 }  // namespace
 
 Composer::Samplers Composer::makeSamplers() {
   Samplers made{graphics::Sampler::create(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR),
+                graphics::Sampler::create(GL_LINEAR, GL_LINEAR),
                 graphics::Sampler::create(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR)};
   glSamplerParameterf(made.polar.id(), GL_TEXTURE_MAX_LOD, 2.0F);
   return made;
+}
+
+const graphics::Sampler& Composer::Samplers::of(Sampling sampling) const {
+  switch (sampling) {
+    case Sampling::Magnified:
+      return magnified;
+    case Sampling::Polar:
+      return polar;
+    case Sampling::Plain:
+      break;
+  }
+  return plain;
 }
 
 std::size_t Composer::bytesPerRawTile() {
@@ -159,9 +186,10 @@ std::size_t Composer::bytesPerComposite() {
   return bytes;
 }
 
-double Composer::estimatedMilliseconds(std::size_t layers) const {
+double Composer::estimatedMilliseconds(std::span<const CompositionPart> parts) const {
   const double texelsPerMillisecond = graphics_.limits().software ? 4e5 : 1e7;
-  return static_cast<double>(layers + 1) * side * side / texelsPerMillisecond;
+  const std::size_t fetches = isHidingAll(parts) ? 1 : parts.size() + 1;
+  return static_cast<double>(fetches) * side * side / texelsPerMillisecond;
 }
 
 Result<std::unique_ptr<Composer>> Composer::create(graphics::Graphics& graphics, const Capacity& capacity) {
@@ -312,8 +340,7 @@ std::optional<Composer::Source> Composer::sourceOf(const CompositionPart& part) 
     if (!slot) {
       return std::nullopt;
     }
-    glTextureSubImage3D(rawTiles_.id(), 0, 0, 0, static_cast<GLint>(*slot), side, side, 1, GL_RGBA, GL_UNSIGNED_BYTE,
-                        part.tile->pixels().rgba.data());
+    upload(rawTiles_, *slot, *part.tile);
   }
   return Source{static_cast<float>(*slot)};
 }
@@ -340,6 +367,14 @@ void Composer::bindBlocks(CompositeKind kind, std::span<const CompositionPart> p
 }
 
 bool Composer::compose(std::uint32_t slot, CompositeKind kind, std::span<const CompositionPart> parts) {
+  if (isHidingAll(parts)) {
+    upload(composites_, slot, *parts.back().tile);
+    const TargetRestorer restorer;
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+    glBindVertexArray(emptyVertexArray_.id());
+    drawHalfSizes(slot);
+    return true;
+  }
   sourcesOfParts_.clear();
   for (const CompositionPart& part : parts) {
     const std::optional<Source> source = sourceOf(part);

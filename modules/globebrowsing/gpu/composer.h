@@ -50,11 +50,15 @@ class Composer {
   [[nodiscard]] static Result<std::unique_ptr<Composer>> create(graphics::Graphics& graphics, const Capacity& capacity);
 
   /// How composites are sampled when chunks are drawn.
+  enum class Sampling : std::uint8_t { Plain, Magnified, Polar };
   struct Samplers {
     graphics::Sampler plain;
+    /// Without levels, for tiles none of whose texels is smaller than a pixel: on a software renderer a third cheaper.
+    graphics::Sampler magnified;
     /// For tiles that taper to a pole. There a pixel spans many texels along u that are all but one point; going by
     /// those would blur along v as well, so at most the second half-size level is used.
     graphics::Sampler polar;
+    [[nodiscard]] const graphics::Sampler& of(Sampling sampling) const;
   };
   [[nodiscard]] static Samplers makeSamplers();
 
@@ -85,9 +89,10 @@ class Composer {
   /// No composite can have more layers with tiles.
   [[nodiscard]] std::uint32_t rawTileCapacity() const { return rawSlots_.capacity(); }
 
-  /// What composing that many layers takes: a fetch per texel and layer, and once more for the half-size levels, at the
-  /// rates of a software renderer (400 million a second, measured) or of a modest graphics card.
-  [[nodiscard]] double estimatedMilliseconds(std::size_t layers) const;
+  /// What composing them takes: a fetch per texel and layer, none where the topmost hides all others, and once more for
+  /// the half-size levels, at the rates of a software renderer (400 million a second, measured) or of a modest graphics
+  /// card.
+  [[nodiscard]] double estimatedMilliseconds(std::span<const CompositionPart> parts) const;
 
   static constexpr int levelCount = 4;
 

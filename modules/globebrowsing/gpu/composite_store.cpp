@@ -443,7 +443,7 @@ void CompositeStore::compose(double milliseconds) {
       continue;  // those after it may have a slot already
     }
     missing_ -= isNext ? 0 : 1;
-    spent += composer_->estimatedMilliseconds(request.partCount);
+    spent += composer_->estimatedMilliseconds({parts_.data() + request.firstPart, request.partCount});
   }
   for (const CompositeKind kind : allCompositeKinds) {
     KindState& state = of(kind);

@@ -98,28 +98,36 @@ unsigned GlobeTiles::heightVersion(const TileIndex& index) const {
   return surfaces_.nearest(index).stamp;
 }
 
-double GlobeTiles::geometricError(const TileIndex& index, int step) const {
+SurfaceErrors GlobeTiles::surfaceErrors(const TileIndex& index) const {
+  static_assert(SurfaceErrors::steps == chunk_grid::steps);
+  SurfaceErrors errors;
   const SurfaceStore::Nearest nearest = surfaces_.nearest(index);
   if (nearest.surface == nullptr) {
-    const double halfSegment =
-        std::numbers::pi / std::ldexp(static_cast<double>(2 * chunk_grid::segmentsAt(step)), index.level);
-    return tiling_->ellipsoid().maximumRadius() * (1.0 - std::cos(halfSegment));
+    for (int step = 0; step < chunk_grid::steps; ++step) {
+      const double halfSegment =
+          std::numbers::pi / std::ldexp(static_cast<double>(2 * chunk_grid::segmentsAt(step)), index.level);
+      errors.vertical[static_cast<std::size_t>(step)] =
+          tiling_->ellipsoid().maximumRadius() * (1.0 - std::cos(halfSegment));
+    }
+    return errors;
   }
   // From level to level curvature's part falls to a quarter, and so does relief's below the resolution of its data;
   // above it, relief is as rough at half the size and falls to a half.
-  double curvature = nearest.surface->lift(step);
-  double relief = std::max(nearest.surface->error(step) - curvature, 0.0);
-  for (std::optional<TileIndex> at = tiling_->parent(index);
-       at && at->level >= nearest.level && nearest.level < index.level; at = tiling_->parent(*at)) {
-    curvature *= 0.25;
-    relief *= surfaces_.hasFinerHeights(*at) ? 0.5 : 0.25;
+  double curvatureLeft = 1.0;
+  double reliefLeft = 1.0;
+  for (std::optional<TileIndex> at = nearest.level < index.level ? tiling_->parent(index) : std::nullopt;
+       at && at->level >= nearest.level; at = tiling_->parent(*at)) {
+    curvatureLeft *= 0.25;
+    reliefLeft *= surfaces_.hasFinerHeights(*at) ? 0.5 : 0.25;
   }
-  return curvature + relief;
-}
-
-double GlobeTiles::surfaceDrift(const TileIndex& index, int step) const {
-  const SurfaceStore::Nearest nearest = surfaces_.nearest(index);
-  return nearest.surface == nullptr ? 0.0 : std::ldexp(nearest.surface->drift(step), 2 * (nearest.level - index.level));
+  for (int step = 0; step < chunk_grid::steps; ++step) {
+    const double curvature = nearest.surface->lift(step);
+    const double relief = std::max(nearest.surface->error(step) - curvature, 0.0);
+    const auto place = static_cast<std::size_t>(step);
+    errors.vertical[place] = curvature * curvatureLeft + relief * reliefLeft;
+    errors.along[place] = nearest.surface->drift(step) * curvatureLeft;
+  }
+  return errors;
 }
 
 std::string GlobeTiles::waitingFor() const {

@@ -33,8 +33,7 @@ class GlobeTiles final : public TileResidency {
   [[nodiscard]] State state(const TileIndex& index, int colourLevel) const override;
   [[nodiscard]] HeightRange heightRange(const TileIndex& index) const override;
   [[nodiscard]] unsigned heightVersion(const TileIndex& index) const override;
-  [[nodiscard]] double geometricError(const TileIndex& index, int step) const override;
-  [[nodiscard]] double surfaceDrift(const TileIndex& index, int step) const override;
+  [[nodiscard]] SurfaceErrors surfaceErrors(const TileIndex& index) const override;
   [[nodiscard]] bool hasFinerColours(const TileIndex& index) const override { return composites_.hasFiner(index); }
 
   [[nodiscard]] const SurfaceStore& surfaces() const { return surfaces_; }

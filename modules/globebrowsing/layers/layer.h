@@ -61,6 +61,12 @@ class Layer final : public PropertyOwner {
   [[nodiscard]] glm::dvec3 ownColour() const { return relief() != nullptr ? relief()->colour : colour.get(); }
   [[nodiscard]] LayerStructure structure() const { return {group_, sampling_, blend(), adjustment()}; }
 
+  /// Whether its tiles are shown as they are: nothing mixes them with what is below or changes their colours.
+  [[nodiscard]] bool showsTilesUnchanged() const {
+    return sampling_ == Sampling::Tile && blend() == BlendMode::Normal && adjustment() == Adjustment::None &&
+           settings().isIdentity() && effectiveOpacity() == 1.0;
+  }
+
   /// What the layer's table describes. Ask for tiles at step().
   [[nodiscard]] const std::shared_ptr<TileProvider>& provider() const { return provider_; }
   /// The tiles to show: those of the provider, or of its step at the time of the last update. Another after Reset and

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "globebrowsing/tiling/tile_index.h"
 
 namespace meridian::globebrowsing {
@@ -8,6 +10,13 @@ namespace meridian::globebrowsing {
 struct HeightRange {
   double minimum = 0.0;
   double maximum = 0.0;
+};
+
+/// What is wrong with a tile's surface drawn with 2, 4, 8, 16, 32 segments a side.
+struct SurfaceErrors {
+  static constexpr std::size_t steps = 5;
+  std::array<double, steps> vertical{};  ///< metres between it and its height tile's nodes
+  std::array<double, steps> along{};     ///< metres that what lies on it is shifted: parallels drawn as chords
 };
 
 /// What selection may know of what is in memory. Declared here so that the chunk tree needs neither OpenGL nor layers;
@@ -37,11 +46,8 @@ class TileResidency {
   [[nodiscard]] virtual HeightRange heightRange(const TileIndex& index) const = 0;
   /// Grows whenever heightRange(index) may have changed; equal numbers mean an equal range.
   [[nodiscard]] virtual unsigned heightVersion(const TileIndex& index) const = 0;
-  /// Metres between the tile's surface drawn with 2, 4, 8, 16, 32 segments a side (`step` 0..4) and drawn at its
-  /// height tile's nodes. Estimated from the ellipsoid and the parent while there is no height tile.
-  [[nodiscard]] virtual double geometricError(const TileIndex& index, int step) const = 0;
-  /// Metres that the same drawing shifts what lies on the surface along it: parallels drawn as chords.
-  [[nodiscard]] virtual double surfaceDrift(const TileIndex& index, int step) const = 0;
+  /// Estimated from the ellipsoid and the nearest ancestor while there is no height tile.
+  [[nodiscard]] virtual SurfaceErrors surfaceErrors(const TileIndex& index) const = 0;
   /// Whether some enabled colour layer has finer data within this tile than the tile's own composite shows.
   [[nodiscard]] virtual bool hasFinerColours(const TileIndex& index) const = 0;
 };

@@ -20,7 +20,7 @@ std::string defines(const ChunkProgramKey& key) {
       int{key.shading}, int{key.accurateNormals}, int{key.night}, int{key.overlay}, int{key.edges});
 }
 
-/// Draws a triangle as chunks are drawn, with either sampler, and textures, vertices and a target of its own.
+/// Draws a triangle as chunks are drawn, with each sampler, and textures, vertices and a target of its own.
 void warmChunks(GLuint program, bool blended) {
   constexpr int size = 24;
   const graphics::Texture composites = graphics::Texture::array2D(GL_RGBA8, size, size, 2, Composer::levelCount);
@@ -59,7 +59,7 @@ void warmChunks(GLuint program, bool blended) {
   glBindBufferBase(GL_UNIFORM_BUFFER, chunk_bindings::chunkBlock, chunkBlock.id());
   glUseProgram(program);
   glBindVertexArray(vertexArray.id());
-  for (const graphics::Sampler* sampler : {&samplers.plain, &samplers.polar}) {
+  for (const graphics::Sampler* sampler : {&samplers.plain, &samplers.magnified, &samplers.polar}) {
     glBindSampler(chunk_bindings::compositeUnit, sampler->id());
     SurfacePool::Draws draws;
     draws.counts = {3, 3};

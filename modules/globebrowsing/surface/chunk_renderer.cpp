@@ -33,12 +33,23 @@ double texelsPerPixel(double texels, const ChunkSurface& surface, const Selected
   return texels * chunk.distance / (meridian * view.pixelsPerRadian);
 }
 
-/// Whether a chunk is sampled as polar tiles are. One that is shown much smaller than its composite needs all levels.
-bool isPolar(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
-  constexpr double mostTexelsPerPixel = 3.0;
-  // It may draw an ancestor's composite, of which it is a part.
-  const double texels = std::ldexp(colourLayout.interior, chunk.colourLevel - chunk.index.level);
-  return std::abs(surface.taper()) > polarTaper && texelsPerPixel(texels, surface, chunk, view) < mostTexelsPerPixel;
+/// Of the shortest edge, seen from as far as its farthest corner, at the least slant that its ellipsoid normals allow:
+/// the most that any pixel can span.
+double mostTexelsPerPixel(double texels, const ChunkSurface& surface, const View& view) {
+  const auto& [northWest, northEast, southWest, southEast] = surface.corners();
+  const double edge = std::min({glm::distance(northWest, northEast), glm::distance(northWest, southWest),
+                                glm::distance(southWest, southEast), glm::distance(northEast, southEast)});
+  double distance = 0.0;
+  double slant = 0.0;
+  for (const glm::dvec3& corner : surface.corners()) {
+    const glm::dvec3 towardsEye = view.cameraPosition - corner;
+    const double length = glm::length(towardsEye);
+    distance = std::max(distance, length);
+    const ChunkSurface::NormalCone& cone = surface.normalCone();
+    slant = std::max(slant, std::acos(std::clamp(glm::dot(cone.axis, towardsEye) / length, -1.0, 1.0)) + cone.angle);
+  }
+  const double foreshortening = std::cos(std::min(slant, std::numbers::pi / 2.0));
+  return texels * distance / (edge * foreshortening * view.pixelsPerRadian);
 }
 
 /// A camera that is not a number never reaches the GPU.
@@ -60,6 +71,20 @@ bool isInDaylight(const ChunkSurface& surface, const glm::dvec3& light) {
   const ChunkSurface::NormalCone& cone = surface.normalCone();
   const double fromLight = std::acos(std::clamp(glm::dot(cone.axis, light), -1.0, 1.0));
   return fromLight + cone.angle < std::numbers::pi / 2.0 - leastDaylight;
+}
+
+Composer::Sampling samplingOf(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
+  constexpr double mostPolarTexelsPerPixel = 3.0;  // one that is shown much smaller needs all levels
+  // It may draw an ancestor's composite, of which it is a part.
+  const double texels = std::ldexp(colourLayout.interior, chunk.colourLevel - chunk.index.level);
+  if (std::abs(surface.taper()) > polarTaper) {
+    return texelsPerPixel(texels, surface, chunk, view) < mostPolarTexelsPerPixel ? Composer::Sampling::Polar
+                                                                                  : Composer::Sampling::Plain;
+  }
+  // A pixel's bilinear fetch spans two texels, so up to then none is passed over.
+  constexpr double mostMagnifiedTexelsPerPixel = 2.0;
+  return mostTexelsPerPixel(texels, surface, view) <= mostMagnifiedTexelsPerPixel ? Composer::Sampling::Magnified
+                                                                                  : Composer::Sampling::Plain;
 }
 
 int normalLevel(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
@@ -96,7 +121,7 @@ std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
     const auto alike = [&](const Prepared& prepared) { return prepared.variant == first->variant; };
     const auto most = std::min(static_cast<std::ptrdiff_t>(ChunkBlock::most), prepared_.end() - first);
     const auto last = std::find_if_not(first, first + most, alike);
-    if (!bindForDrawing(tiles, first->variant.night, first->variant.polar)) {
+    if (!bindForDrawing(tiles, first->variant.night, first->variant.sampling)) {
       return 0;
     }
     drawBatch({first, last}, job, tiles);
@@ -114,7 +139,7 @@ void ChunkRenderer::prepare(const Job& job, const GlobeTiles& tiles) {
     if ((chunk.views >> job.viewNumber & 1U) == 0 || surface == nullptr || !slot) {
       continue;
     }
-    const Variant variant{!isInDaylight(*surface, job.view->lightDirection), isPolar(*surface, chunk, *job.view)};
+    const Variant variant{!isInDaylight(*surface, job.view->lightDirection), samplingOf(*surface, chunk, *job.view)};
     prepared_.push_back({&chunk, surface, *slot, variant});
   }
   // What is translucent is drawn near to far whatever it takes: nothing may shine through the globe itself.
@@ -125,7 +150,7 @@ void ChunkRenderer::prepare(const Job& job, const GlobeTiles& tiles) {
   }
 }
 
-bool ChunkRenderer::bindForDrawing(const GlobeTiles& tiles, bool night, bool polar) const {
+bool ChunkRenderer::bindForDrawing(const GlobeTiles& tiles, bool night, Composer::Sampling sampling) const {
   const GLuint program = night ? programs_.full() : programs_.daylight();
   if (program == 0) {
     return false;
@@ -133,8 +158,7 @@ bool ChunkRenderer::bindForDrawing(const GlobeTiles& tiles, bool night, bool pol
   glUseProgram(program);
   glEnable(GL_CULL_FACE);
   glBindTextureUnit(compositeUnit, tiles.composites().composer().composites());
-  const Composer::Samplers& samplers = tiles.composites().composer().samplers();
-  glBindSampler(compositeUnit, polar ? samplers.polar.id() : samplers.plain.id());
+  glBindSampler(compositeUnit, tiles.composites().composer().samplers().of(sampling).id());
   if (programs_.key().blended) {
     enableBlending();
   }

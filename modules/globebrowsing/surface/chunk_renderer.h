@@ -22,9 +22,11 @@ namespace meridian::globebrowsing {
 /// The level of its normals that the chunk is drawn with: that whose nodes are nearest to a pixel apart.
 [[nodiscard]] int normalLevel(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view);
 
+/// How its composite is sampled.
+[[nodiscard]] Composer::Sampling samplingOf(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view);
+
 /// Draws selected chunks: one program, two array textures and one vertex array for all, and one call for all that are
-/// drawn alike. Render
-/// thread only; a steady frame allocates nothing.
+/// drawn alike. Render thread only; a steady frame allocates nothing.
 class ChunkRenderer {
  public:
   explicit ChunkRenderer(graphics::Graphics& graphics);
@@ -47,7 +49,7 @@ class ChunkRenderer {
   std::size_t draw(const Job& job, GlobeTiles& tiles);
   /// A program (with or without night layers), textures and state of draw(), for drawing something else the same way;
   /// whether there is a program.
-  bool bindForDrawing(const GlobeTiles& tiles, bool night, bool polar) const;
+  bool bindForDrawing(const GlobeTiles& tiles, bool night, Composer::Sampling sampling) const;
   /// Back to the default state.
   void unbind() const;
 
@@ -55,10 +57,10 @@ class ChunkRenderer {
   /// What draws need different states for: a switch of program or sampler costs as much as several draws.
   struct Variant {
     bool night = true;
-    bool polar = false;
+    Composer::Sampling sampling = Composer::Sampling::Plain;
     auto operator<=>(const Variant&) const = default;
   };
-  static constexpr std::size_t variantCount = 4;
+  static constexpr std::size_t variantCount = 6;
   struct Prepared {
     const SelectedChunk* chunk = nullptr;
     const ChunkSurface* surface = nullptr;

@@ -20,6 +20,7 @@ struct UnitSquareTransform {
   glm::dvec2 offset{0.0};
   glm::dvec2 scale{1.0};
 
+  bool operator==(const UnitSquareTransform&) const = default;
   [[nodiscard]] glm::dvec2 apply(const glm::dvec2& uv) const { return offset + scale * uv; }
   /// First this, then `outer`.
   [[nodiscard]] UnitSquareTransform then(const UnitSquareTransform& outer) const {

@@ -22,9 +22,14 @@ class FreeResidency : public TileResidency {
   [[nodiscard]] State state(const TileIndex&, int) const override { return State::Complete; }
   [[nodiscard]] HeightRange heightRange(const TileIndex&) const override { return {-100.0, 4000.0}; }
   [[nodiscard]] unsigned heightVersion(const TileIndex&) const override { return 1; }
-  [[nodiscard]] double surfaceDrift(const TileIndex& /*index*/, int /*step*/) const override { return 0.0; }
-  [[nodiscard]] double geometricError(const TileIndex& index, int step) const override {
-    return std::ldexp(1e6, -2 * index.level - 2 * step);
+  [[nodiscard]] SurfaceErrors surfaceErrors(const TileIndex& index) const override {
+    SurfaceErrors errors;
+    double error = std::ldexp(1e6, -2 * index.level);
+    for (double& vertical : errors.vertical) {
+      vertical = error;
+      error *= 0.25;
+    }
+    return errors;
   }
   [[nodiscard]] bool hasFinerColours(const TileIndex&) const override { return true; }
 };
@@ -38,8 +43,13 @@ class TableResidency final : public FreeResidency {
   void keep(const TileIndex& index, int /*colourLevel*/) override { tiles_[index].kept = true; }
   [[nodiscard]] State state(const TileIndex& index, int /*colourLevel*/) const override { return find(index).state; }
   [[nodiscard]] unsigned heightVersion(const TileIndex& index) const override { return find(index).version; }
-  [[nodiscard]] double geometricError(const TileIndex& index, int step) const override {
-    return find(index).error * FreeResidency::geometricError(index, step);
+  [[nodiscard]] SurfaceErrors surfaceErrors(const TileIndex& index) const override {
+    SurfaceErrors errors = FreeResidency::surfaceErrors(index);
+    const double scale = find(index).error;
+    for (double& vertical : errors.vertical) {
+      vertical *= scale;
+    }
+    return errors;
   }
   [[nodiscard]] bool hasFinerColours(const TileIndex& index) const override { return find(index).version > 0; }
 

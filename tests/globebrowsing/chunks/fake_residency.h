@@ -55,9 +55,14 @@ class FakeResidency final : public TileResidency {
     return range;
   }
   [[nodiscard]] unsigned heightVersion(const TileIndex&) const override { return version; }
-  [[nodiscard]] double surfaceDrift(const TileIndex& /*index*/, int /*step*/) const override { return 0.0; }
-  [[nodiscard]] double geometricError(const TileIndex& index, int step) const override {
-    return errorAtRoot * std::ldexp(1.0, -2 * index.level - 2 * step);
+  [[nodiscard]] SurfaceErrors surfaceErrors(const TileIndex& index) const override {
+    SurfaceErrors errors;
+    double error = errorAtRoot * std::ldexp(1.0, -2 * index.level);
+    for (double& vertical : errors.vertical) {
+      vertical = error;
+      error *= 0.25;
+    }
+    return errors;
   }
   [[nodiscard]] bool hasFinerColours(const TileIndex& index) const override { return finerColours(index); }
 
