@@ -129,12 +129,10 @@ Result<void> RampProvider::openData() {
   if (!file_) {
     return {};
   }
-  return check()
-      .and_then([this] { return readText(*file_, where_); })
-      .and_then([this](std::string text) {
-        fileText_ = std::move(text);
-        return checkRamp(fileText_, where_ + ": " + *file_);
-      });
+  return check().and_then([this] { return readText(*file_, where_); }).and_then([this](std::string text) {
+    fileText_ = std::move(text);
+    return checkRamp(fileText_, where_ + ": " + *file_);
+  });
 }
 
 void RampProvider::takeOpened() {
