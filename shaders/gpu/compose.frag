@@ -7,11 +7,15 @@
 #{constants}
 #include "layers/blend.glsl"
 #include "layers/compose_layer.glsl"
+#include "layers/relief.glsl"
 #{layers}
 
 struct Placement {
     vec4 transform;  // raw tile's texture coordinate = xy + zw * pixel
-    float slot;      // of the raw tiles' array; below 0: the layer has nothing here
+    float slot;      // of the raw tiles' array, or the relief tiles'; below 0: the layer has nothing here
+    float pixel;     // metres, of the composite
+    int ramp;        // row of the ramps
+    int stops;       // of it
 };
 layout(std140, binding = 3) uniform PlacementBlock {
     vec4 background;
@@ -20,16 +24,43 @@ layout(std140, binding = 3) uniform PlacementBlock {
 } part;
 
 layout(binding = 0) uniform sampler2DArray rawTiles;
+layout(binding = 1) uniform sampler2DArray reliefHeights;
+layout(binding = 2) uniform sampler2DArray reliefNormals;
+layout(binding = 3) uniform sampler2D ramps;
 layout(location = 0) out vec4 colour;
+
+vec4 reliefColour(Layer layer, int sampling, Placement placement, vec3 place) {
+    float height = textureLod(reliefHeights, place, 0.0).x;
+    if (sampling == samplingColorRelief) {
+        return rampColour(ramps, placement.ramp, placement.stops, height);
+    }
+    vec2 normal = textureLod(reliefNormals, place, 0.0).xy;
+    if (sampling == samplingSlope) {
+        return rampColour(ramps, placement.ramp, placement.stops, degrees(atan(slopeOf(normal))));
+    }
+    if (sampling == samplingHillshade) {
+        return vec4(hillshade(layer.relief, normal), 1.0);
+    }
+    vec2 reach = 0.5 * (layer.relief.y + 1.0) * placement.transform.zw;
+    vec4 beside = vec4(textureLod(reliefHeights, place + vec3(reach.x, 0.0, 0.0), 0.0).x,
+                       textureLod(reliefHeights, place - vec3(reach.x, 0.0, 0.0), 0.0).x,
+                       textureLod(reliefHeights, place + vec3(0.0, reach.y, 0.0), 0.0).x,
+                       textureLod(reliefHeights, place - vec3(0.0, reach.y, 0.0), 0.0).x);
+    vec2 around = vec2(min(height, min(min(beside.x, beside.y), min(beside.z, beside.w))),
+                       max(height, max(max(beside.x, beside.y), max(beside.z, beside.w))));
+    return vec4(layer.colour, isolineCoverage(layer.relief, height, around, slopeOf(normal), placement.pixel));
+}
 
 vec4 composePart(vec4 below, int i, int sampling, int mode, int adjustment) {
     vec4 own = vec4(layers[i].colour, 1.0);
-    if (sampling == samplingTile) {
+    if (sampling != samplingSolidColor) {
         if (part.placements[i].slot < 0.0) {
             return below;
         }
         vec4 transform = part.placements[i].transform;
-        own = textureLod(rawTiles, vec3(transform.xy + transform.zw * gl_FragCoord.xy, part.placements[i].slot), 0.0);
+        vec3 place = vec3(transform.xy + transform.zw * gl_FragCoord.xy, part.placements[i].slot);
+        own = sampling == samplingTile ? textureLod(rawTiles, place, 0.0)
+                                       : reliefColour(layers[i], sampling, part.placements[i], place);
     }
     return composeLayer(layers[i], mode, adjustment, own, below);
 }

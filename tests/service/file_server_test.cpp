@@ -89,13 +89,13 @@ TEST_F(FileServerTest, HeightsOfAServiceHeedTheAsset) {
   Fields file = more;
   file["FilePath"] = raster();
   const auto layer = stage.open(service);
-  const auto task = layer->heightTask(*stage.tiling, {0, 1, 0, 1});
+  const auto task = layer->heightTask(*stage.tiling, {0, 1, 0, 1}, heightLayout);
   ASSERT_NE(task, nullptr);
   while (!task->prepare(1.0, [] {})) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   const auto found = task->make({});
-  const auto expected = stage.open(file)->heights(*stage.tiling, {0, 1, 0, 1}, {});
+  const auto expected = stage.open(file)->heights(*stage.tiling, {0, 1, 0, 1}, heightLayout, {});
   ASSERT_TRUE(found && expected);
   EXPECT_NEAR(found->minimum, expected->minimum, 20.0);
   EXPECT_NEAR(found->maximum, expected->maximum, 20.0);

@@ -25,7 +25,9 @@ constexpr std::size_t loopLayers = 64;
 struct Placement {
   glm::vec4 transform{0.0F};
   float slot = -1.0F;
-  std::array<float, 3> padding{};
+  float pixel = 0.0F;
+  int ramp = 0;
+  int stops = 0;
 };
 static_assert(sizeof(Placement) == 32);
 
@@ -75,6 +77,7 @@ void warmComposition(GLuint program, std::size_t layers) {
   const graphics::Texture raw = graphics::Texture::array2D(colourFormat, size, size, 2);
   const graphics::Texture target = graphics::Texture::array2D(colourFormat, size, size, 2, 2);
   const graphics::Sampler sampler = graphics::Sampler::create(GL_LINEAR, GL_LINEAR);
+  const ReliefTextures::Set relief = ReliefTextures::standIn();
   const graphics::Framebuffer framebuffer = graphics::Framebuffer::create();
   framebuffer.attachLayer(GL_COLOR_ATTACHMENT0, target, 0);
   const std::vector<std::byte> zeros(sizeof(PlacementHead) + layers * (sizeof(Placement) + layerFields().stride()));
@@ -85,6 +88,7 @@ void warmComposition(GLuint program, std::size_t layers) {
   glDisable(GL_DEPTH_TEST);
   glBindTextureUnit(0, raw.id());
   glBindSampler(0, sampler.id());
+  relief.bind(sampler);
   glBindBufferBase(GL_UNIFORM_BUFFER, layerBinding, blocks.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, placementBinding, blocks.id());
   glUseProgram(program);
@@ -122,7 +126,9 @@ class TargetRestorer {
     glEnable(GL_DEPTH_TEST);
     glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(framebuffer_));
     glViewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
-    glBindSampler(0, 0);
+    for (GLuint unit = 0; unit < 4; ++unit) {
+      glBindSampler(unit, 0);
+    }
     glBindVertexArray(0);
     glUseProgram(0);
   }
@@ -199,6 +205,7 @@ Composer::Composer(graphics::Graphics& graphics, const Capacity& capacity)
       samplers_(makeSamplers()),
       rawSampler_(graphics::Sampler::create(GL_LINEAR, GL_LINEAR)),
       rawSlots_(capacity.rawTiles),
+      relief_(capacity.reliefTiles),
       framebuffer_(graphics::Framebuffer::create()),
       emptyVertexArray_(graphics::VertexArray::create()),
       uniforms_(std::size_t{64} << 10, static_cast<std::size_t>(graphics.limits().uniformBlockAlignment)) {
@@ -297,9 +304,35 @@ void Composer::endFrame() {
   uniforms_.endFrame();
 }
 
-std::optional<float> Composer::slotOf(const CompositionPart& part) {
+std::optional<Composer::Source> Composer::reliefSourceOf(const CompositionPart& part) {
+  const ReliefStyle& style = *part.layer->relief();
+  const bool needsRamp = style.kind == ReliefKind::ColorRelief || style.kind == ReliefKind::Slope;
+  Source source;
+  if (part.relief == nullptr || (needsRamp && style.ramp == nullptr)) {
+    return source;
+  }
+  if (needsRamp) {
+    const std::optional<std::uint32_t> row = relief_.ramp(style.ramp, frame_);
+    if (!row) {
+      return std::nullopt;
+    }
+    source.ramp = static_cast<int>(*row);
+    source.stops = static_cast<int>(style.ramp->stops.size());
+  }
+  const std::optional<std::uint32_t> slot = relief_.tile(part.key, *part.relief, frame_);
+  if (!slot) {
+    return std::nullopt;
+  }
+  source.slot = static_cast<float>(*slot);
+  return source;
+}
+
+std::optional<Composer::Source> Composer::sourceOf(const CompositionPart& part) {
+  if (isRelief(part.layer->sampling())) {
+    return reliefSourceOf(part);
+  }
   if (part.tile == nullptr || !part.tile->pixels().anyOpaque) {
-    return -1.0F;
+    return Source{};
   }
   std::optional<std::uint32_t> slot = rawSlots_.use(part.key, frame_);
   if (!slot) {
@@ -309,7 +342,7 @@ std::optional<float> Composer::slotOf(const CompositionPart& part) {
     }
     upload(rawTiles_, *slot, *part.tile);
   }
-  return static_cast<float>(*slot);
+  return Source{static_cast<float>(*slot)};
 }
 
 void Composer::bindBlocks(CompositeKind kind, std::span<const CompositionPart> parts) {
@@ -324,7 +357,9 @@ void Composer::bindBlocks(CompositeKind kind, std::span<const CompositionPart> p
   std::memcpy(placements.bytes, &head, sizeof(head));
   for (std::size_t i = 0; i < parts.size(); ++i) {
     layerFields().write(*parts[i].layer, {settings.bytes + i * stride, stride});
-    const Placement placement{pixelTransform(parts[i].transform), slotsOfParts_[i], {}};
+    const Source& source = sourcesOfParts_[i];
+    const Placement placement{pixelTransform(parts[i].transform), source.slot, static_cast<float>(parts[i].pixelMetres),
+                              source.ramp, source.stops};
     std::memcpy(placements.bytes + sizeof(head) + i * sizeof(placement), &placement, sizeof(placement));
   }
   uniforms_.bind(layerBinding, settings);
@@ -340,13 +375,13 @@ bool Composer::compose(std::uint32_t slot, CompositeKind kind, std::span<const C
     drawHalfSizes(slot);
     return true;
   }
-  slotsOfParts_.clear();
+  sourcesOfParts_.clear();
   for (const CompositionPart& part : parts) {
-    const std::optional<float> raw = slotOf(part);
-    if (!raw) {
+    const std::optional<Source> source = sourceOf(part);
+    if (!source) {
       return false;
     }
-    slotsOfParts_.push_back(*raw);
+    sourcesOfParts_.push_back(*source);
   }
   const TargetRestorer restorer;
   bindBlocks(kind, parts);
@@ -356,6 +391,7 @@ bool Composer::compose(std::uint32_t slot, CompositeKind kind, std::span<const C
   glUseProgram(program(kind));
   glBindTextureUnit(0, rawTiles_.id());
   glBindSampler(0, rawSampler_.id());
+  relief_.bind();
   glBindVertexArray(emptyVertexArray_.id());
   glDrawArrays(GL_TRIANGLES, 0, 3);
   drawHalfSizes(slot);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "globebrowsing/gpu/composite_kind.h"
+#include "globebrowsing/gpu/relief_textures.h"
 #include "globebrowsing/gpu/slot_pool.h"
 #include "globebrowsing/gpu/uniform_ring.h"
 #include "globebrowsing/layers/layer.h"
@@ -23,9 +24,11 @@ namespace meridian::globebrowsing {
 /// One enabled layer's part in a composite.
 struct CompositionPart {
   const Layer* layer = nullptr;
-  const ColourTile* tile = nullptr;  ///< null: the layer has nothing there, or needs no tile
-  TileKey key;                       ///< of that tile
-  UnitSquareTransform transform;     ///< the composite's unit square in that tile's
+  const ColourTile* tile = nullptr;    ///< null: the layer has nothing there, or needs no tile
+  TileKey key;                         ///< of that tile, or of `relief`
+  UnitSquareTransform transform;       ///< the composite's unit square in that tile's
+  const ReliefTile* relief = nullptr;  ///< of layers that colour heights
+  double pixelMetres = 0.0;            ///< of the composite; for those
 };
 
 /// Draws composites: the layers of one kind, blended once per tile instead of once per fragment (after Kooima; Bladin &
@@ -38,6 +41,7 @@ class Composer {
   struct Capacity {
     std::uint32_t composites = 0;
     std::uint32_t rawTiles = 0;
+    std::uint32_t reliefTiles = 4;  ///< with memory of their own from when the first is needed
   };
   [[nodiscard]] static std::size_t bytesPerComposite();
   [[nodiscard]] static std::size_t bytesPerRawTile();
@@ -78,8 +82,10 @@ class Composer {
   /// Composes into that array layer. False when the raw tiles of this frame fill their pool: try in the next frame.
   bool compose(std::uint32_t slot, CompositeKind kind, std::span<const CompositionPart> parts);
 
-  /// Bytes of the raw tiles that are there.
-  [[nodiscard]] std::size_t rawTileBytes() const { return rawSlots_.used() * bytesPerRawTile(); }
+  /// Bytes of the raw tiles and relief tiles that are there.
+  [[nodiscard]] std::size_t rawTileBytes() const {
+    return rawSlots_.used() * bytesPerRawTile() + relief_.residentBytes();
+  }
   /// No composite can have more layers with tiles.
   [[nodiscard]] std::uint32_t rawTileCapacity() const { return rawSlots_.capacity(); }
 
@@ -96,8 +102,15 @@ class Composer {
   [[nodiscard]] Result<graphics::ProgramDescription> describe(std::string key, std::size_t layers,
                                                               std::string body) const;
   [[nodiscard]] GLuint program(CompositeKind kind) const;
-  /// The raw tile's slot, below 0 without a tile; nothing when the pool is full.
-  std::optional<float> slotOf(const CompositionPart& part);
+  /// Where the shader finds what a part is made from.
+  struct Source {
+    float slot = -1.0F;  ///< of the raw or relief tile; below 0: there is nothing
+    int ramp = 0;
+    int stops = 0;
+  };
+  /// Nothing when a pool is full.
+  std::optional<Source> sourceOf(const CompositionPart& part);
+  std::optional<Source> reliefSourceOf(const CompositionPart& part);
   void bindBlocks(CompositeKind kind, std::span<const CompositionPart> parts);
   void drawHalfSizes(std::uint32_t slot);
 
@@ -114,13 +127,14 @@ class Composer {
   Samplers samplers_;
   graphics::Sampler rawSampler_;
   SlotPool<TileKey> rawSlots_;
+  ReliefTextures relief_;
   graphics::Framebuffer framebuffer_;
   graphics::VertexArray emptyVertexArray_;
   UniformRing uniforms_;
   std::array<Kind, compositeKindCount> kinds_;
   graphics::ProgramHandle loop_;
   graphics::ProgramHandle halfSize_;
-  std::vector<float> slotsOfParts_;
+  std::vector<Source> sourcesOfParts_;
   std::uint64_t frame_ = 0;
 };
 

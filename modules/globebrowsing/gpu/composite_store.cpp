@@ -42,6 +42,10 @@ bool isTile(const Layer& layer) {
   return layer.sampling() == Sampling::Tile;
 }
 
+TileDataPointer makeRelief(const Tiling& tiling, const TileIndex& index, std::vector<float> heights) {
+  return std::make_shared<const ReliefTile>(tiling, index, heights);
+}
+
 /// Whether going from one step to another may lead over `step`: it is the first, the other, or between them in time.
 bool isOnTheWay(const LayerStepPointer& from, const LayerStepPointer& step, const LayerStepPointer& to) {
   if (from == nullptr || step == nullptr || to == nullptr || step == from || step == to) {
@@ -57,10 +61,11 @@ bool isOnTheWay(const LayerStepPointer& from, const LayerStepPointer& step, cons
 
 CompositeStore::CompositeStore(std::shared_ptr<const Tiling> tiling, LayerManager& layers, TileStreamer& streamer,
                                std::unique_ptr<Composer> composer, std::uint32_t capacity)
-    : tiling_(std::move(tiling)),
+    : tiling_(tiling),
       layers_(layers),
       streamer_(streamer),
       composer_(std::move(composer)),
+      relief_(std::move(tiling), layers, streamer, reliefLayout, makeRelief),
       slots_(capacity),
       slotStamps_(capacity) {
   facts_.reserve(mostFacts);
@@ -74,6 +79,7 @@ void CompositeStore::beginFrame(std::uint64_t frame) {
   parts_.clear();
   held_.clear();
   composer_->beginFrame(frame);
+  relief_.beginFrame();
   bool changed = facts_.size() > mostFacts;
   for (const CompositeKind kind : allCompositeKinds) {
     changed = updateKind(kind) || changed;
@@ -87,9 +93,13 @@ bool CompositeStore::updateKind(CompositeKind kind) {
   KindState& state = of(kind);
   const LayerGroup& group = layers_.group(layerGroup(kind));
   const std::vector<Layer*>& enabled = group.enabledLayers();
-  const bool changed = state.version != group.settingsVersion();
+  const bool colourHeights =
+      std::any_of(enabled.begin(), enabled.end(), [](const Layer* layer) { return isRelief(layer->sampling()); });
+  const std::uint32_t reliefStream = colourHeights ? relief_.stream() : 0;
+  const bool changed = state.version != group.settingsVersion() || state.reliefStream != reliefStream;
   if (changed) {
     state.version = group.settingsVersion();
+    state.reliefStream = reliefStream;
     takeSteps(state, enabled);
     state.shown.stamp = ++state.lastStamp;
   }
@@ -234,12 +244,19 @@ bool CompositeStore::inUse(CompositeKind kind) const {
 bool CompositeStore::anyFiner(CompositeKind kind, const Generation& generation, const TileIndex& index) const {
   const std::vector<Layer*>& enabled = layers_.group(layerGroup(kind)).enabledLayers();
   for (std::size_t i = 0; i < enabled.size() && i < generation.steps.size(); ++i) {
-    const LayerStepPointer& step = generation.steps[i];
-    if (isTile(*enabled[i]) && step != nullptr && step->tiles()->hasFinerColours(*tiling_, index)) {
+    if (isFiner(*enabled[i], generation.steps[i], index)) {
       return true;
     }
   }
   return false;
+}
+
+bool CompositeStore::isFiner(const Layer& layer, const LayerStepPointer& step, const TileIndex& index) const {
+  if (isRelief(layer.sampling())) {
+    // Lines are as thin as the composite lets them be, however coarse the heights are.
+    return layer.sampling() == Sampling::Isolines ? index.level < maximumLevel : relief_.hasFiner(index);
+  }
+  return isTile(layer) && step != nullptr && step->tiles()->hasFinerColours(*tiling_, index);
 }
 
 const CompositeStore::Facts& CompositeStore::facts(const TileIndex& index) const {
@@ -351,29 +368,43 @@ bool CompositeStore::gather(const CompositeKey& key, double priority) {
   const std::vector<Layer*>& enabled = layers_.group(layerGroup(key.kind)).enabledLayers();
   const Generation& generation = generationOf(key);
   for (std::size_t i = 0; i < enabled.size(); ++i) {
-    CompositionPart part{enabled[i], nullptr, {}, {}};
-    const LayerStepPointer& step = generation.steps[i];
-    if (isTile(*enabled[i]) && step != nullptr) {
-      const std::shared_ptr<TileProvider>& tiles = step->tiles();
-      TileIndex index = key.index;
-      while (index.level > 0 && !tiles->hasFinerColours(*tiling_, *tiling_->parent(index))) {
-        part.transform = part.transform.then(tiling_->inParent(index));
-        index = *tiling_->parent(index);
-      }
-      if (tiles->overlaps(*tiling_, index)) {
-        part.key = {step->stream(), index};
-        const TileAnswer answer =
-            streamer_.request(part.key, priority, [&] { return std::make_unique<ColourJob>(tiles, tiling_, index); });
-        all = all && answer.state != TileAnswer::State::Pending;
-        if (answer.state == TileAnswer::State::Ready) {
-          held_.push_back(*answer.data);
-          part.tile = &static_cast<const ColourTile&>(*held_.back());
-        }
-      }
-    }
+    CompositionPart part;
+    part.layer = enabled[i];
+    all = gatherPart(part, generation.steps[i], key, priority) && all;
     parts_.push_back(part);
   }
   return all;
+}
+
+bool CompositeStore::gatherPart(CompositionPart& part, const LayerStepPointer& step, const CompositeKey& key,
+                                double priority) {
+  const bool colourHeights = isRelief(part.layer->sampling());
+  if (!colourHeights && (!isTile(*part.layer) || step == nullptr)) {
+    return true;
+  }
+  const auto hasFinerData = [&](const TileIndex& tile) {
+    return colourHeights ? relief_.hasFiner(tile) : step->tiles()->hasFinerColours(*tiling_, tile);
+  };
+  TileIndex index = key.index;
+  while (index.level > 0 && !hasFinerData(*tiling_->parent(index))) {
+    part.transform = part.transform.then(tiling_->inParent(index));
+    index = *tiling_->parent(index);
+  }
+  TileAnswer answer;
+  if (colourHeights) {
+    part.key = {relief_.stream(), index};
+    part.pixelMetres = pixelMetres(*tiling_, key.index);
+    answer = relief_.request(index, priority);
+  } else if (const std::shared_ptr<TileProvider>& tiles = step->tiles(); tiles->overlaps(*tiling_, index)) {
+    part.key = {step->stream(), index};
+    answer = streamer_.request(part.key, priority, [&] { return std::make_unique<ColourJob>(tiles, tiling_, index); });
+  }
+  if (answer.state == TileAnswer::State::Ready) {
+    held_.push_back(*answer.data);
+    part.tile = colourHeights ? nullptr : &static_cast<const ColourTile&>(*held_.back());
+    part.relief = colourHeights ? &static_cast<const ReliefTile&>(*held_.back()) : nullptr;
+  }
+  return answer.state != TileAnswer::State::Pending;
 }
 
 void CompositeStore::keep(const TileIndex& index, int colourLevel) {

@@ -12,6 +12,7 @@
 
 #include "globebrowsing/gpu/composer.h"
 #include "globebrowsing/gpu/composite_kind.h"
+#include "globebrowsing/gpu/height_composition.h"
 #include "globebrowsing/gpu/opening_wait.h"
 #include "globebrowsing/gpu/slot_pool.h"
 #include "globebrowsing/layers/layer_manager.h"
@@ -110,7 +111,8 @@ class CompositeStore {
     int colourLevel = 0;
   };
   struct KindState {
-    std::uint64_t version = 0;  ///< of the group's settings
+    std::uint64_t version = 0;       ///< of the group's settings
+    std::uint32_t reliefStream = 0;  ///< that its composites were made from; 0: none of its layers colours heights
     OpeningWait opening;
     Generation shown;
     Generation next;
@@ -144,12 +146,16 @@ class CompositeStore {
 
   [[nodiscard]] const Facts& facts(const TileIndex& index) const;
   [[nodiscard]] bool anyFiner(CompositeKind kind, const Generation& generation, const TileIndex& index) const;
+  /// Whether that layer shows more in composites that are finer than the tile's.
+  [[nodiscard]] bool isFiner(const Layer& layer, const LayerStepPointer& step, const TileIndex& index) const;
   [[nodiscard]] CompositeKey shownKey(CompositeKind kind, const TileIndex& index, int colourLevel) const;
   [[nodiscard]] CompositeKey nextKey(CompositeKind kind, const TileIndex& index, int colourLevel) const;
   [[nodiscard]] std::uint8_t nextOwnerLevel(CompositeKind kind, const TileIndex& index) const;
   State wantComposite(const CompositeKey& key, double priority);
   [[nodiscard]] State stateOf(const CompositeKey& key) const;
   bool gather(const CompositeKey& key, double priority);
+  /// What that layer adds to the composite; whether it is there (or never will be), else asks for it.
+  bool gatherPart(CompositionPart& part, const LayerStepPointer& step, const CompositeKey& key, double priority);
   enum class Composed { Done, NoSlot, NoRawTiles };
   Composed composeOne(const Request& request);
 
@@ -157,6 +163,7 @@ class CompositeStore {
   LayerManager& layers_;
   TileStreamer& streamer_;
   std::unique_ptr<Composer> composer_;
+  HeightComposition relief_;
   SlotPool<CompositeKey> slots_;
   std::vector<std::uint64_t> slotStamps_;  ///< of what each slot's composite was made from
   mutable std::array<KindState, compositeKindCount> kinds_;

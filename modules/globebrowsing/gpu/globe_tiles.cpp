@@ -37,7 +37,9 @@ Result<std::unique_ptr<GlobeTiles>> GlobeTiles::create(graphics::Graphics& graph
   const std::uint32_t rawTiles = layersOfArray(units, options.leastRawTiles);
   const std::uint32_t composites = layersOfArray(
       less(colourBytes, rawTiles * Composer::bytesPerRawTile()) / Composer::bytesPerComposite(), leastComposites);
-  return Composer::create(graphics, {composites, rawTiles}).map([&](std::unique_ptr<Composer> composer) {
+  // Of relief tiles each composite needs one; with more of them settings that move need not upload them again.
+  const std::uint32_t reliefTiles = layersOfArray(options.texturePoolBytes / 16 / ReliefTextures::bytesPerTile(), 4);
+  return Composer::create(graphics, {composites, rawTiles, reliefTiles}).map([&](std::unique_ptr<Composer> composer) {
     return std::unique_ptr<GlobeTiles>(
         new GlobeTiles(std::move(tiling), layers, streamer, std::move(composer), surfaces, composites));
   });

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "globebrowsing/gpu/opening_wait.h"
+#include "globebrowsing/gpu/height_composition.h"
 #include "globebrowsing/gpu/surface_pool.h"
 #include "globebrowsing/layers/chunk_surface.h"
 #include "globebrowsing/layers/layer_manager.h"
@@ -23,7 +23,6 @@ class SurfaceStore {
   /// All must outlive the store.
   SurfaceStore(std::shared_ptr<const Tiling> tiling, LayerManager& layers, TileStreamer& streamer,
                std::uint32_t capacity);
-  ~SurfaceStore();
 
   void beginFrame(std::uint64_t frame);
   /// Asks for what the tile's surface lacks. Returns whether nothing is lacking: it is resident and current.
@@ -46,7 +45,7 @@ class SurfaceStore {
   };
   [[nodiscard]] Nearest nearest(const TileIndex& index) const;
   /// Whether some enabled height layer has finer data within the tile than its surface shows. No input or output.
-  [[nodiscard]] bool hasFinerHeights(const TileIndex& index) const;
+  [[nodiscard]] bool hasFinerHeights(const TileIndex& index) const { return heights_.hasFiner(index); }
   /// No resident surface is deeper.
   [[nodiscard]] int deepestLevel() const { return deepest_; }
   /// The least height of any resident surface, at most 0.
@@ -72,23 +71,16 @@ class SurfaceStore {
     TileDataPointer data;
   };
 
-  /// Whether the raw heights of all layers are there (or will never be); asks for those that are missing.
-  bool gather(const TileIndex& index, double priority);
   /// False when the pool is full.
   bool place(const Arrival& arrival);
 
   std::shared_ptr<const Tiling> tiling_;
   LayerManager& layers_;
-  TileStreamer& streamer_;
+  HeightComposition heights_;
   SurfacePool pool_;
   std::unordered_map<TileIndex, Resident> resident_;
-  mutable std::unordered_map<TileIndex, bool> finer_;  ///< what hasFinerHeights found; asked for every frame
   std::vector<Arrival> arrivals_;
-  std::vector<TileAnswer> gathered_;  ///< by enabled height layer, of the tile being looked at
-  OpeningWait opening_;
   std::uint64_t frame_ = 0;
-  std::uint64_t heightsVersion_ = 0;
-  std::uint32_t stream_ = 0;  ///< of surfaces composed from the present version of the height layers
   unsigned lastStamp_ = 0;
   bool full_ = false;
   int deepest_ = 0;

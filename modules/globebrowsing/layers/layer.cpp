@@ -26,6 +26,27 @@ std::string_view stateName(TileProvider::State state) {
   return "failed";
 }
 
+Sampling samplingOf(TileProvider& provider) {
+  if (provider.hasTiles()) {
+    return Sampling::Tile;
+  }
+  const ReliefStyle* relief = provider.relief();
+  if (relief == nullptr) {
+    return Sampling::SolidColor;
+  }
+  switch (relief->kind) {
+    case ReliefKind::ColorRelief:
+      return Sampling::ColorRelief;
+    case ReliefKind::Hillshade:
+      return Sampling::Hillshade;
+    case ReliefKind::Slope:
+      return Sampling::Slope;
+    case ReliefKind::Isolines:
+      return Sampling::Isolines;
+  }
+  return Sampling::SolidColor;
+}
+
 }  // namespace
 
 Layer::Layer(LayerDescription description, LayerGroupId group, const LayerServices& services,
@@ -52,7 +73,7 @@ Layer::Layer(LayerDescription description, LayerGroupId group, const LayerServic
       group_(group),
       zIndex_(description.zIndex.value_or(1)),
       hadZIndex_(description.zIndex.has_value()),
-      sampling_(description.provider->hasTiles() ? Sampling::Tile : Sampling::SolidColor),
+      sampling_(samplingOf(*description.provider)),
       request_(std::move(description.request)),
       provider_(std::move(description.provider)),
       services_(services),
@@ -73,6 +94,11 @@ Layer::~Layer() {
 void Layer::attachProvider() {
   if (PropertyOwner* owner = provider_->properties()) {
     addChild(*owner);
+    if (isRelief(sampling_)) {
+      for (Property* property : owner->properties()) {
+        property->onChange([this] { changed_(*this, Change::Settings); });
+      }
+    }
   }
   step_ = provider_->steps() != nullptr
               ? nullptr
@@ -134,7 +160,7 @@ bool Layer::isReady() const {
 
 bool Layer::isOpening() const {
   const TileProvider::State state = provider_->state();
-  return sampling_ == Sampling::Tile &&
+  return sampling_ != Sampling::SolidColor &&
          (state == TileProvider::State::NotOpened || state == TileProvider::State::Opening ||
           (state == TileProvider::State::Ready && step_ == nullptr && player_.awaits()));
 }
@@ -164,6 +190,7 @@ void Layer::update(const Time& now) {
     TileProvider::openOn(*services_.workers, provider_);
   }
   updateStatus();
+  updateRelief();
   if (provider_->steps() != nullptr && provider_->state() == TileProvider::State::Ready) {
     play(now);
   }
@@ -206,6 +233,15 @@ void Layer::updateStatus() {
   if (--framesUntilLook_ < 0) {
     framesUntilLook_ = framesBetweenLooks;
     noteWaiting();
+  }
+}
+
+void Layer::updateRelief() {
+  // Looked at every frame, so that the ramp of a file that has been opened becomes the property's.
+  const ReliefStyle* style = relief();
+  if (style != nullptr && style->problem != seenProblem_) {
+    seenProblem_ = style->problem;
+    lastError.put(seenProblem_);
   }
 }
 

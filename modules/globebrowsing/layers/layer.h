@@ -13,6 +13,7 @@
 #include "globebrowsing/layers/layer_group.h"
 #include "globebrowsing/layers/step_player.h"
 #include "globebrowsing/layers/structure_key.h"
+#include "globebrowsing/providers/relief_style.h"
 #include "globebrowsing/providers/tile_provider.h"
 #include "host/api/property.h"
 #include "host/api/property_owner.h"
@@ -54,6 +55,10 @@ class Layer final : public PropertyOwner {
   [[nodiscard]] BlendMode blend() const { return static_cast<BlendMode>(blendMode.get()); }
   [[nodiscard]] Adjustment adjustment() const { return static_cast<Adjustment>(adjustmentType.get()); }
   [[nodiscard]] Sampling sampling() const { return sampling_; }
+  /// How it colours the composed heights; null for other layers.
+  [[nodiscard]] const ReliefStyle* relief() const { return provider_->relief(); }
+  /// Of a SolidColor layer, or of isolines.
+  [[nodiscard]] glm::dvec3 ownColour() const { return relief() != nullptr ? relief()->colour : colour.get(); }
   [[nodiscard]] LayerStructure structure() const { return {group_, sampling_, blend(), adjustment()}; }
 
   /// Whether its tiles are shown as they are: nothing mixes them with what is below or changes their colours.
@@ -114,6 +119,7 @@ class Layer final : public PropertyOwner {
   void restart();
   void play(const Time& now);
   void updateStatus();
+  void updateRelief();
   void noteWaiting();
 
   LayerGroupId group_;
@@ -129,6 +135,7 @@ class Layer final : public PropertyOwner {
   TileProvider::State seenState_ = TileProvider::State::NotOpened;
   const Error* seenError_ = nullptr;
   std::string seenFailure_;  ///< of tiles that wait
+  std::string seenProblem_;  ///< of its ReliefStyle
   int framesUntilLook_ = 0;
   bool wantsRemoval_ = false;
   bool quiet_ = false;  ///< SetDefault tells once, not three times

@@ -101,11 +101,14 @@ void LayerFields::write(const Layer& layer, std::span<std::byte> to) const {
 const LayerFields& layerFields() {
   // A float after a vec3 fills its row of 16 bytes.
   static const LayerFields fields({
-      field("colour", [](const Layer& layer) { return glm::vec3(layer.colour.get()); }),
+      field("colour", [](const Layer& layer) { return glm::vec3(layer.ownColour()); }),
       field("opacity", [](const Layer& layer) { return static_cast<float>(layer.effectiveOpacity()); }),
       field("chromaKeyColour", [](const Layer& layer) { return glm::vec3(layer.chromaKeyColour.get()); }),
       field("chromaKeyTolerance",
             [](const Layer& layer) { return static_cast<float>(layer.chromaKeyTolerance.get()); }),
+      field(
+          "relief",
+          [](const Layer& layer) { return layer.relief() != nullptr ? layer.relief()->parameters : glm::vec4(0.0F); }),
       field("gamma", [](const Layer& layer) { return static_cast<float>(layer.gamma.get()); }),
       field("multiplier", [](const Layer& layer) { return static_cast<float>(layer.multiplier.get()); }),
       field("offset", [](const Layer& layer) { return static_cast<float>(layer.offset.get()); }),

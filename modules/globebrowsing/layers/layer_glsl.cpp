@@ -29,7 +29,7 @@ std::string glslLayerConstants() {
   for (const std::string& adjustment : adjustmentNames()) {
     text += fmt::format("const int adjustment{} = {};\n", adjustment, number++);
   }
-  for (const Sampling sampling : {Sampling::Tile, Sampling::SolidColor}) {
+  for (const Sampling sampling : allSamplings) {
     text += fmt::format("const int sampling{} = {};\n", name(sampling), static_cast<int>(sampling));
   }
   return text;

@@ -35,7 +35,9 @@ std::string_view name(Adjustment adjustment) {
   return adjustmentNames()[static_cast<std::size_t>(adjustment)];
 }
 std::string_view name(Sampling sampling) {
-  return sampling == Sampling::Tile ? "Tile" : "SolidColor";
+  static constexpr std::array<std::string_view, allSamplings.size()> names{"Tile",      "SolidColor", "ColorRelief",
+                                                                           "Hillshade", "Slope",      "Isolines"};
+  return names[static_cast<std::size_t>(sampling)];
 }
 
 const std::vector<std::string>& blendModeNames() {

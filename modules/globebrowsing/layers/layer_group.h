@@ -22,7 +22,13 @@ enum class BlendMode : std::uint8_t { Normal, Multiply, MultiplyMix, Add, Subtra
 /// What is done to a layer's colours before its settings.
 enum class Adjustment : std::uint8_t { None, ChromaKey };
 /// Where a layer's colours come from; heights are always tiles.
-enum class Sampling : std::uint8_t { Tile, SolidColor };
+enum class Sampling : std::uint8_t { Tile, SolidColor, ColorRelief, Hillshade, Slope, Isolines };
+inline constexpr std::array<Sampling, 6> allSamplings{Sampling::Tile,      Sampling::SolidColor, Sampling::ColorRelief,
+                                                      Sampling::Hillshade, Sampling::Slope,      Sampling::Isolines};
+/// Whether they are made from the composed heights.
+[[nodiscard]] constexpr bool isRelief(Sampling sampling) {
+  return sampling >= Sampling::ColorRelief;
+}
 
 /// As assets and scripts write them: "ColorLayers", "MultiplyMix", "ChromaKey".
 [[nodiscard]] std::string_view name(LayerGroupId group);

@@ -9,8 +9,8 @@
 
 namespace meridian::globebrowsing {
 
-/// Tiles that a layer shows, has just shown or is going to show: a provider, with a stream of its own in the
-/// TileStreamer that is forgotten with it. A layer whose tiles never change has a single one. Render thread only.
+/// Tiles that a layer shows, has just shown or is going to show: a provider, with streams of its own in the
+/// TileStreamer that are forgotten with it. A layer whose tiles never change has a single one. Render thread only.
 class LayerStep {
  public:
   /// The streamer outlives it; null: no stream. `source` is the layer's provider.
@@ -19,6 +19,7 @@ class LayerStep {
       : tiles_(std::move(tiles)),
         streamer_(streamer),
         stream_(streamer != nullptr ? streamer->newStream() : 0),
+        reliefStream_(streamer != nullptr ? streamer->newStream() : 0),
         source_(source),
         when_(when) {}
   LayerStep(const LayerStep&) = delete;
@@ -26,12 +27,15 @@ class LayerStep {
   ~LayerStep() {
     if (streamer_ != nullptr) {
       streamer_->forget(stream_);
+      streamer_->forget(reliefStream_);
     }
   }
 
   /// Where its tiles come from.
   [[nodiscard]] const std::shared_ptr<TileProvider>& tiles() const { return tiles_; }
   [[nodiscard]] std::uint32_t stream() const { return stream_; }
+  /// Of its heights in reliefLayout.
+  [[nodiscard]] std::uint32_t reliefStream() const { return reliefStream_; }
   /// The layer's provider that it was made by; only to be compared.
   [[nodiscard]] const TileProvider* source() const { return source_; }
   [[nodiscard]] const TileStep& when() const { return when_; }
@@ -40,6 +44,7 @@ class LayerStep {
   std::shared_ptr<TileProvider> tiles_;
   TileStreamer* streamer_;
   std::uint32_t stream_;
+  std::uint32_t reliefStream_;
   const TileProvider* source_;
   TileStep when_;
 };

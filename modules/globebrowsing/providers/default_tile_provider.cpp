@@ -187,16 +187,17 @@ Result<ColourPixels> DefaultTileProvider::makeColours(const Tiling& tiling, cons
 }
 
 Result<HeightPixels> DefaultTileProvider::makeHeights(const Tiling& tiling, const TileIndex& index,
-                                                      std::stop_token stop) const {
-  return source_->heights(tiling, index, heightLayout, std::move(stop));
+                                                      const TileLayout& layout, std::stop_token stop) const {
+  return source_->heights(tiling, index, layout, std::move(stop));
 }
 
 std::unique_ptr<ColourTask> DefaultTileProvider::makeColourTask(const Tiling& tiling, const TileIndex& index) const {
   return source_->colourTask(tiling, index, colourLayout);
 }
 
-std::unique_ptr<HeightTask> DefaultTileProvider::makeHeightTask(const Tiling& tiling, const TileIndex& index) const {
-  return source_->heightTask(tiling, index, heightLayout);
+std::unique_ptr<HeightTask> DefaultTileProvider::makeHeightTask(const Tiling& tiling, const TileIndex& index,
+                                                                const TileLayout& layout) const {
+  return source_->heightTask(tiling, index, layout);
 }
 
 bool DefaultTileProvider::dataOverlap(const Tiling& tiling, const TileIndex& index) const {

@@ -48,10 +48,11 @@ class DefaultTileProvider final : public TileProvider {
   void tellNotes() const;
   [[nodiscard]] Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
                                                  std::stop_token stop) const override;
-  [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index,
+  [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
                                                  std::stop_token stop) const override;
   [[nodiscard]] std::unique_ptr<ColourTask> makeColourTask(const Tiling& tiling, const TileIndex& index) const override;
-  [[nodiscard]] std::unique_ptr<HeightTask> makeHeightTask(const Tiling& tiling, const TileIndex& index) const override;
+  [[nodiscard]] std::unique_ptr<HeightTask> makeHeightTask(const Tiling& tiling, const TileIndex& index,
+                                                           const TileLayout& layout) const override;
   [[nodiscard]] bool dataOverlap(const Tiling& tiling, const TileIndex& index) const override;
   [[nodiscard]] bool dataFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const override;
 

@@ -8,7 +8,8 @@ namespace meridian::globebrowsing {
 class DrawnTileProvider : public TileProvider {
  private:
   [[nodiscard]] Result<void> openData() final { return {}; }
-  [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling&, const TileIndex&, std::stop_token) const final {
+  [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling&, const TileIndex&, const TileLayout&,
+                                                 std::stop_token) const final {
     return failure("a layer of drawn tiles has no heights", {}, "use it in a group of colours");
   }
   [[nodiscard]] bool dataOverlap(const Tiling&, const TileIndex&) const final { return true; }

@@ -25,13 +25,23 @@ constexpr std::array<std::pair<std::string_view, LayerType>, 10> olderNames{{
 }  // namespace
 
 const std::vector<std::string>& layerTypeNames() {
-  static const std::vector<std::string> names{"DefaultTileProvider",       "SingleImageProvider",
-                                              "ImageSequenceTileProvider", "SizeReferenceTileProvider",
-                                              "TemporalTileProvider",      "TileIndexTileProvider",
-                                              "TileProviderByDate",        "TileProviderByIndex",
-                                              "TileProviderByLevel",       "SolidColor",
-                                              "SpoutImageProvider",        "VideoTileProvider",
-                                              "GraticuleTileProvider"};
+  static const std::vector<std::string> names{"DefaultTileProvider",
+                                              "SingleImageProvider",
+                                              "ImageSequenceTileProvider",
+                                              "SizeReferenceTileProvider",
+                                              "TemporalTileProvider",
+                                              "TileIndexTileProvider",
+                                              "TileProviderByDate",
+                                              "TileProviderByIndex",
+                                              "TileProviderByLevel",
+                                              "SolidColor",
+                                              "SpoutImageProvider",
+                                              "VideoTileProvider",
+                                              "GraticuleTileProvider",
+                                              "ColorRelief",
+                                              "Hillshade",
+                                              "Slope",
+                                              "Isolines"};
   return names;
 }
 

@@ -23,7 +23,11 @@ enum class LayerType : std::uint8_t {
   SolidColor,
   SpoutImageProvider,
   VideoTileProvider,
-  GraticuleTileProvider
+  GraticuleTileProvider,
+  ColorRelief,
+  Hillshade,
+  Slope,
+  Isolines
 };
 
 /// In the order of their numbers.

@@ -6,6 +6,7 @@
 #include "globebrowsing/providers/default_tile_provider.h"
 #include "globebrowsing/providers/graticule_tile_provider.h"
 #include "globebrowsing/providers/image_sequence_tile_provider.h"
+#include "globebrowsing/providers/relief_provider.h"
 #include "globebrowsing/providers/single_image_provider.h"
 #include "globebrowsing/providers/size_reference_tile_provider.h"
 #include "globebrowsing/providers/solid_colour_provider.h"
@@ -53,7 +54,12 @@ std::span<const ProviderType> providerTypes() {
       typeOf<TileProviderByIndex>(LayerType::TileProviderByIndex, "a provider for most tiles, others for some"),
       typeOf<TileProviderByLevel>(LayerType::TileProviderByLevel, "a provider for each range of levels"),
       typeOf<SolidColourProvider>(LayerType::SolidColor, "one colour everywhere"),
-      typeOf<GraticuleTileProvider>(LayerType::GraticuleTileProvider, "parallels and meridians")};
+      typeOf<GraticuleTileProvider>(LayerType::GraticuleTileProvider, "parallels and meridians"),
+      ProviderType{LayerType::ColorRelief, "heights by a colour ramp", &RampProvider::schema(),
+                   &RampProvider::makeColourRelief},
+      typeOf<HillshadeProvider>(LayerType::Hillshade, "relief in a light of its own"),
+      ProviderType{LayerType::Slope, "the slope by a colour ramp", &RampProvider::schema(), &RampProvider::makeSlope},
+      typeOf<IsolinesProvider>(LayerType::Isolines, "lines of equal height")};
   return types;
 }
 

@@ -14,8 +14,9 @@ namespace meridian::globebrowsing {
 template <class Tile, class Task>
 class RawTileJob final : public TileJob {
  public:
-  RawTileJob(std::shared_ptr<TileProvider> provider, std::shared_ptr<const Tiling> tiling, const TileIndex& index)
-      : provider_(std::move(provider)), tiling_(std::move(tiling)), index_(index) {}
+  RawTileJob(std::shared_ptr<TileProvider> provider, std::shared_ptr<const Tiling> tiling, const TileIndex& index,
+             const TileLayout& layout = colourLayout)
+      : provider_(std::move(provider)), tiling_(std::move(tiling)), index_(index), layout_(layout) {}
 
   bool prepare(double priority, const std::function<void()>& wake) override {
     if (!hasBegun_) {
@@ -39,17 +40,18 @@ class RawTileJob final : public TileJob {
 
  private:
   void begin(std::unique_ptr<ColourTask>& task) { task = provider_->colourTask(*tiling_, index_); }
-  void begin(std::unique_ptr<HeightTask>& task) { task = provider_->heightTask(*tiling_, index_); }
+  void begin(std::unique_ptr<HeightTask>& task) { task = provider_->heightTask(*tiling_, index_, layout_); }
   Result<ColourPixels> make(const std::unique_ptr<ColourTask>&, const std::stop_token& stop) {
     return provider_->colours(*tiling_, index_, stop);
   }
   Result<HeightPixels> make(const std::unique_ptr<HeightTask>&, const std::stop_token& stop) {
-    return provider_->heights(*tiling_, index_, stop);
+    return provider_->heights(*tiling_, index_, layout_, stop);
   }
 
   std::shared_ptr<TileProvider> provider_;
   std::shared_ptr<const Tiling> tiling_;
   TileIndex index_;
+  TileLayout layout_;  ///< of heights; colours are always in colourLayout
   bool hasBegun_ = false;
   std::unique_ptr<Task> task_;
 };

@@ -72,7 +72,11 @@ Result<void> SingleImageProvider::openData() {
         colours_ = std::move(colours);
         return resampleHeights(**source, tiling, TileIndex{}, heightLayout, {});
       })
-      .map([this](HeightPixels heights) { heights_ = std::move(heights); });
+      .and_then([&](HeightPixels heights) {
+        heights_ = std::move(heights);
+        return resampleHeights(**source, tiling, TileIndex{}, reliefLayout, {});
+      })
+      .map([this](HeightPixels relief) { relief_ = std::move(relief); });
 }
 
 Result<ColourPixels> SingleImageProvider::makeColours(const Tiling& /*tiling*/, const TileIndex& /*index*/,
@@ -81,8 +85,8 @@ Result<ColourPixels> SingleImageProvider::makeColours(const Tiling& /*tiling*/, 
 }
 
 Result<HeightPixels> SingleImageProvider::makeHeights(const Tiling& /*tiling*/, const TileIndex& /*index*/,
-                                                      std::stop_token /*stop*/) const {
-  return heights_;
+                                                      const TileLayout& layout, std::stop_token /*stop*/) const {
+  return layout == heightLayout ? heights_ : relief_;
 }
 
 bool SingleImageProvider::dataOverlap(const Tiling& /*tiling*/, const TileIndex& /*index*/) const {

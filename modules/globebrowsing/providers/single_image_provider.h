@@ -17,11 +17,11 @@ class SingleImageProvider final : public TileProvider {
   [[nodiscard]] Result<void> check() const override;
 
  private:
-  /// Reads the image onto one tile's pixels (and nodes), once.
+  /// Reads the image onto one tile's samples in each layout, once.
   [[nodiscard]] Result<void> openData() override;
   [[nodiscard]] Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
                                                  std::stop_token stop) const override;
-  [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index,
+  [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
                                                  std::stop_token stop) const override;
   [[nodiscard]] bool dataOverlap(const Tiling& tiling, const TileIndex& index) const override;
   [[nodiscard]] bool dataFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const override;
@@ -29,7 +29,8 @@ class SingleImageProvider final : public TileProvider {
   DataPath path_;
   std::string where_;
   ColourPixels colours_;
-  HeightPixels heights_;
+  HeightPixels heights_;  ///< in heightLayout
+  HeightPixels relief_;   ///< in reliefLayout
 };
 
 }  // namespace meridian::globebrowsing

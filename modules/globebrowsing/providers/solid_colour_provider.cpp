@@ -11,14 +11,4 @@ Result<std::shared_ptr<TileProvider>> SolidColourProvider::make(const ProviderRe
   return std::make_shared<SolidColourProvider>();
 }
 
-Result<ColourPixels> SolidColourProvider::makeColours(const Tiling& /*tiling*/, const TileIndex& /*index*/,
-                                                      std::stop_token /*stop*/) const {
-  return failure("a layer of type SolidColor has no tiles");
-}
-
-Result<HeightPixels> SolidColourProvider::makeHeights(const Tiling& /*tiling*/, const TileIndex& /*index*/,
-                                                      std::stop_token /*stop*/) const {
-  return failure("a layer of type SolidColor has no heights", {}, "use it in a group of colours");
-}
-
 }  // namespace meridian::globebrowsing

@@ -96,16 +96,18 @@ std::unique_ptr<ColourTask> TileProvider::colourTask(const Tiling& tiling, const
   return state() == State::Ready ? makeColourTask(tiling, index) : nullptr;
 }
 
-std::unique_ptr<HeightTask> TileProvider::heightTask(const Tiling& tiling, const TileIndex& index) const {
-  return state() == State::Ready ? makeHeightTask(tiling, index) : nullptr;
+std::unique_ptr<HeightTask> TileProvider::heightTask(const Tiling& tiling, const TileIndex& index,
+                                                     const TileLayout& layout) const {
+  return state() == State::Ready ? makeHeightTask(tiling, index, layout) : nullptr;
 }
 
 Result<ColourPixels> TileProvider::colours(const Tiling& tiling, const TileIndex& index, std::stop_token stop) const {
   return requireReady().and_then([&] { return makeColours(tiling, index, std::move(stop)); });
 }
 
-Result<HeightPixels> TileProvider::heights(const Tiling& tiling, const TileIndex& index, std::stop_token stop) const {
-  return requireReady().and_then([&] { return makeHeights(tiling, index, std::move(stop)); });
+Result<HeightPixels> TileProvider::heights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
+                                           std::stop_token stop) const {
+  return requireReady().and_then([&] { return makeHeights(tiling, index, layout, std::move(stop)); });
 }
 
 bool TileProvider::overlaps(const Tiling& tiling, const TileIndex& index) const {

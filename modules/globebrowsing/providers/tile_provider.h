@@ -19,6 +19,7 @@ class PropertyOwner;
 namespace meridian::globebrowsing {
 
 class TileSteps;
+struct ReliefStyle;
 
 /// Where a layer's tiles come from: one class per layer type, made from the layer's asset table without any input or
 /// output (provider_registry.h), then checked by --validate or opened by a worker. Safe from any thread.
@@ -33,6 +34,9 @@ class TileProvider {
 
   /// False for what a shader makes by itself (SolidColor); then colours, heights and overlaps are of no use.
   [[nodiscard]] virtual bool hasTiles() const { return true; }
+  /// Of one that colours the heights of the height layers; null for all others. Render thread only; good until the next
+  /// call.
+  [[nodiscard]] virtual const ReliefStyle* relief() { return nullptr; }
   /// Whether the local data exist, without opening them: what makes a layer usable for --validate.
   [[nodiscard]] virtual Result<void> check() const { return {}; }
 
@@ -60,14 +64,16 @@ class TileProvider {
   /// many. The workers outlive whatever may wake it.
   static void openOn(WorkerPool& workers, std::shared_ptr<TileProvider> provider, bool logFailure = true);
 
-  /// One tile in colourLayout or heightLayout, by and by: where its data come from elsewhere. Null where colours and
-  /// heights give it at once (or an error, when not Ready). Provider and tiling outlive the task.
+  /// One tile, colours in colourLayout, by and by: where its data come from elsewhere. Null where colours and heights
+  /// give it at once (or an error, when not Ready). Provider and tiling outlive the task.
   [[nodiscard]] std::unique_ptr<ColourTask> colourTask(const Tiling& tiling, const TileIndex& index) const;
-  [[nodiscard]] std::unique_ptr<HeightTask> heightTask(const Tiling& tiling, const TileIndex& index) const;
+  [[nodiscard]] std::unique_ptr<HeightTask> heightTask(const Tiling& tiling, const TileIndex& index,
+                                                       const TileLayout& layout) const;
   /// The same at once. Blocking; on a worker. Errors: not Ready; what cannot be read; "cancelled" after a stop; also
   /// where there is a task for it.
   [[nodiscard]] Result<ColourPixels> colours(const Tiling& tiling, const TileIndex& index, std::stop_token stop) const;
-  [[nodiscard]] Result<HeightPixels> heights(const Tiling& tiling, const TileIndex& index, std::stop_token stop) const;
+  [[nodiscard]] Result<HeightPixels> heights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
+                                             std::stop_token stop) const;
 
   /// Whether there is anything within the tile; false unless Ready. No input or output.
   [[nodiscard]] bool overlaps(const Tiling& tiling, const TileIndex& index) const;
@@ -86,13 +92,13 @@ class TileProvider {
   [[nodiscard]] virtual Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
                                                          std::stop_token stop) const = 0;
   [[nodiscard]] virtual Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index,
-                                                         std::stop_token stop) const = 0;
+                                                         const TileLayout& layout, std::stop_token stop) const = 0;
   [[nodiscard]] virtual std::unique_ptr<ColourTask> makeColourTask(const Tiling& /*tiling*/,
                                                                    const TileIndex& /*index*/) const {
     return nullptr;
   }
-  [[nodiscard]] virtual std::unique_ptr<HeightTask> makeHeightTask(const Tiling& /*tiling*/,
-                                                                   const TileIndex& /*index*/) const {
+  [[nodiscard]] virtual std::unique_ptr<HeightTask> makeHeightTask(const Tiling& /*tiling*/, const TileIndex& /*index*/,
+                                                                   const TileLayout& /*layout*/) const {
     return nullptr;
   }
   [[nodiscard]] virtual bool dataOverlap(const Tiling& tiling, const TileIndex& index) const = 0;

@@ -55,11 +55,11 @@ Result<TileProviderByIndex::Cell> readCell(const ProviderRequest& entry) {
 /// Calls `copy` with the place of every sample of the tile that lies within the cell. What lies on its edges belongs to
 /// the tiles beside as well, which know nothing of the cell.
 template <class Copy>
-void forSamplesIn(const TileProviderByIndex::Cell& cell, const Tiling& tiling, const TileIndex& index,
-                  const TileLayout& layout, Copy&& copy) {
+void forSamplesIn(const TileProviderByIndex::Cell& cell, const TileProviderByIndex::Target& target, Copy&& copy) {
+  const TileLayout& layout = target.layout;
   for (int row = 0; row < layout.size(); ++row) {
     for (int column = 0; column < layout.size(); ++column) {
-      const GeodeticPosition place = tiling.geodetic(index, layout.uv(column, row));
+      const GeodeticPosition place = target.tiling.geodetic(target.index, layout.uv(column, row));
       const double longitude = std::remainder(place.longitude, 2.0 * pi);
       if (longitude > cell.west && longitude < cell.east && place.latitude > cell.south &&
           place.latitude < cell.north) {
@@ -100,11 +100,11 @@ std::size_t samples(const TileLayout& layout) {
 }
 
 /// The cell's part of the tile; where it has nothing there will be nothing.
-void put(const ColourPixels& part, const TileProviderByIndex::Cell& cell, const Tiling& tiling, const TileIndex& index,
+void put(const ColourPixels& part, const TileProviderByIndex::Cell& cell, const TileProviderByIndex::Target& target,
          ColourPixels& all) {
-  all.size = colourLayout.size();
-  all.rgba.resize(4 * samples(colourLayout));
-  forSamplesIn(cell, tiling, index, colourLayout, [&](std::size_t sample) {
+  all.size = target.layout.size();
+  all.rgba.resize(4 * samples(target.layout));
+  forSamplesIn(cell, target, [&](std::size_t sample) {
     for (std::size_t i = 4 * sample; i < 4 * sample + 4; ++i) {
       all.rgba[i] = part.rgba.empty() ? std::uint8_t{0} : part.rgba[i];
     }
@@ -112,12 +112,12 @@ void put(const ColourPixels& part, const TileProviderByIndex::Cell& cell, const 
   renewSummary(all);
 }
 
-void put(const HeightPixels& part, const TileProviderByIndex::Cell& cell, const Tiling& tiling, const TileIndex& index,
+void put(const HeightPixels& part, const TileProviderByIndex::Cell& cell, const TileProviderByIndex::Target& target,
          HeightPixels& all) {
   constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
-  all.size = heightLayout.size();
-  all.metres.resize(samples(heightLayout), nothing);
-  forSamplesIn(cell, tiling, index, heightLayout,
+  all.size = target.layout.size();
+  all.metres.resize(samples(target.layout), nothing);
+  forSamplesIn(cell, target,
                [&](std::size_t sample) { all.metres[sample] = part.metres.empty() ? nothing : part.metres[sample]; });
   renewSummary(all);
 }
@@ -184,41 +184,43 @@ bool TileProviderByIndex::isWithin(const Cell& cell, const Tiling& tiling, const
 }
 
 template <class Pixels, class Make>
-Result<Pixels> TileProviderByIndex::compose(const Tiling& tiling, const TileIndex& index, Make make) const {
+Result<Pixels> TileProviderByIndex::compose(const Target& target, Make make) const {
   Result<Pixels> all = make(0);
   for (std::size_t i = 0; i < cells_.size() && all; ++i) {
-    if (!isShown(cells_[i], tiling, index)) {
+    if (!isShown(cells_[i], target.tiling, target.index)) {
       continue;
     }
     const Result<Pixels> part = make(i + 1);
     if (!part) {
       return part;
     }
-    put(*part, cells_[i], tiling, index, *all);
+    put(*part, cells_[i], target, *all);
   }
   return all;
 }
 
 Result<ColourPixels> TileProviderByIndex::makeColours(const Tiling& tiling, const TileIndex& index,
                                                       std::stop_token stop) const {
-  return compose<ColourPixels>(
-      tiling, index, [&](std::size_t provider) { return providers_[provider]->colours(tiling, index, stop); });
+  return compose<ColourPixels>({tiling, index, colourLayout}, [&](std::size_t provider) {
+    return providers_[provider]->colours(tiling, index, stop);
+  });
 }
 
 Result<HeightPixels> TileProviderByIndex::makeHeights(const Tiling& tiling, const TileIndex& index,
-                                                      std::stop_token stop) const {
-  return compose<HeightPixels>(
-      tiling, index, [&](std::size_t provider) { return providers_[provider]->heights(tiling, index, stop); });
+                                                      const TileLayout& layout, std::stop_token stop) const {
+  return compose<HeightPixels>({tiling, index, layout}, [&](std::size_t provider) {
+    return providers_[provider]->heights(tiling, index, layout, stop);
+  });
 }
 
 /// Of the providers that the tile is made of, those that give theirs by and by.
 template <class Pixels>
 class TileProviderByIndex::Task final : public PixelTask<Pixels> {
  public:
-  Task(const TileProviderByIndex& all, const Tiling& tiling, const TileIndex& index)
-      : all_(all), tiling_(tiling), index_(index), parts_(all.providers_.size()) {
+  Task(const TileProviderByIndex& all, const Target& target)
+      : all_(all), target_(target), parts_(all.providers_.size()) {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-      if (i == 0 || isShown(all.cells_[i - 1], tiling, index)) {
+      if (i == 0 || isShown(all.cells_[i - 1], target.tiling, target.index)) {
         begin(*all.providers_[i], parts_[i]);
       }
     }
@@ -239,7 +241,7 @@ class TileProviderByIndex::Task final : public PixelTask<Pixels> {
     }
   }
   Result<Pixels> make(const std::stop_token& stop) override {
-    return all_.template compose<Pixels>(tiling_, index_, [&](std::size_t i) {
+    return all_.template compose<Pixels>(target_, [&](std::size_t i) {
       return parts_[i] != nullptr ? parts_[i]->make(stop) : atOnce(*all_.providers_[i], parts_[i], stop);
     });
   }
@@ -254,33 +256,33 @@ class TileProviderByIndex::Task final : public PixelTask<Pixels> {
 
  private:
   void begin(const TileProvider& provider, std::unique_ptr<ColourTask>& part) {
-    part = provider.colourTask(tiling_, index_);
+    part = provider.colourTask(target_.tiling, target_.index);
   }
   void begin(const TileProvider& provider, std::unique_ptr<HeightTask>& part) {
-    part = provider.heightTask(tiling_, index_);
+    part = provider.heightTask(target_.tiling, target_.index, target_.layout);
   }
   Result<ColourPixels> atOnce(const TileProvider& provider, const std::unique_ptr<ColourTask>&,
                               const std::stop_token& stop) const {
-    return provider.colours(tiling_, index_, stop);
+    return provider.colours(target_.tiling, target_.index, stop);
   }
   Result<HeightPixels> atOnce(const TileProvider& provider, const std::unique_ptr<HeightTask>&,
                               const std::stop_token& stop) const {
-    return provider.heights(tiling_, index_, stop);
+    return provider.heights(target_.tiling, target_.index, target_.layout, stop);
   }
 
   const TileProviderByIndex& all_;
-  const Tiling& tiling_;
-  TileIndex index_;
+  Target target_;
   std::vector<std::unique_ptr<PixelTask<Pixels>>> parts_;  ///< by provider; null where it needs none
 };
 
 std::unique_ptr<ColourTask> TileProviderByIndex::makeColourTask(const Tiling& tiling, const TileIndex& index) const {
-  auto task = std::make_unique<Task<ColourPixels>>(*this, tiling, index);
+  auto task = std::make_unique<Task<ColourPixels>>(*this, Target{tiling, index, colourLayout});
   return task->isNeeded() ? std::move(task) : nullptr;
 }
 
-std::unique_ptr<HeightTask> TileProviderByIndex::makeHeightTask(const Tiling& tiling, const TileIndex& index) const {
-  auto task = std::make_unique<Task<HeightPixels>>(*this, tiling, index);
+std::unique_ptr<HeightTask> TileProviderByIndex::makeHeightTask(const Tiling& tiling, const TileIndex& index,
+                                                                const TileLayout& layout) const {
+  auto task = std::make_unique<Task<HeightPixels>>(*this, Target{tiling, index, layout});
   return task->isNeeded() ? std::move(task) : nullptr;
 }
 

@@ -26,6 +26,12 @@ class TileProviderByIndex final : public TileProvider, private TileSteps {
     double north = 0.0;
   };
   [[nodiscard]] static Cell cellOf(std::int64_t x, std::int64_t y, int openSpaceLevel);
+  /// A tile that is being made.
+  struct Target {
+    const Tiling& tiling;
+    TileIndex index;
+    TileLayout layout;
+  };
 
   /// The first provider is for all other tiles; then one for each cell.
   TileProviderByIndex(std::vector<Cell> cells, std::vector<ProviderPointer> providers)
@@ -44,17 +50,18 @@ class TileProviderByIndex final : public TileProvider, private TileSteps {
   [[nodiscard]] Result<void> openData() override { return openAll(providers_, steps() != nullptr); }
   [[nodiscard]] Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
                                                  std::stop_token stop) const override;
-  [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index,
+  [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
                                                  std::stop_token stop) const override;
   [[nodiscard]] std::unique_ptr<ColourTask> makeColourTask(const Tiling& tiling, const TileIndex& index) const override;
-  [[nodiscard]] std::unique_ptr<HeightTask> makeHeightTask(const Tiling& tiling, const TileIndex& index) const override;
+  [[nodiscard]] std::unique_ptr<HeightTask> makeHeightTask(const Tiling& tiling, const TileIndex& index,
+                                                           const TileLayout& layout) const override;
   [[nodiscard]] bool dataOverlap(const Tiling& tiling, const TileIndex& index) const override;
   [[nodiscard]] bool dataFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const override;
   template <class Pixels>
   class Task;
   /// The tile of all that it is made of; `make(i)` gives that of provider i.
   template <class Pixels, class Make>
-  [[nodiscard]] Result<Pixels> compose(const Tiling& tiling, const TileIndex& index, Make make) const;
+  [[nodiscard]] Result<Pixels> compose(const Target& target, Make make) const;
   /// Whether the cell replaces a part of just that tile.
   [[nodiscard]] static bool isShown(const Cell& cell, const Tiling& tiling, const TileIndex& index);
   /// Whether the cell's middle is in the tile.

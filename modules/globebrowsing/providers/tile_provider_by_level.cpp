@@ -69,16 +69,17 @@ Result<ColourPixels> TileProviderByLevel::makeColours(const Tiling& tiling, cons
 }
 
 Result<HeightPixels> TileProviderByLevel::makeHeights(const Tiling& tiling, const TileIndex& index,
-                                                      std::stop_token stop) const {
-  return providers_[entryOf(index.level)]->heights(tiling, index, std::move(stop));
+                                                      const TileLayout& layout, std::stop_token stop) const {
+  return providers_[entryOf(index.level)]->heights(tiling, index, layout, std::move(stop));
 }
 
 std::unique_ptr<ColourTask> TileProviderByLevel::makeColourTask(const Tiling& tiling, const TileIndex& index) const {
   return providers_[entryOf(index.level)]->colourTask(tiling, index);
 }
 
-std::unique_ptr<HeightTask> TileProviderByLevel::makeHeightTask(const Tiling& tiling, const TileIndex& index) const {
-  return providers_[entryOf(index.level)]->heightTask(tiling, index);
+std::unique_ptr<HeightTask> TileProviderByLevel::makeHeightTask(const Tiling& tiling, const TileIndex& index,
+                                                                const TileLayout& layout) const {
+  return providers_[entryOf(index.level)]->heightTask(tiling, index, layout);
 }
 
 bool TileProviderByLevel::dataOverlap(const Tiling& tiling, const TileIndex& index) const {

@@ -29,10 +29,11 @@ class TileProviderByLevel final : public TileProvider, private TileSteps {
   [[nodiscard]] Result<void> openData() override { return openAll(providers_, steps() != nullptr); }
   [[nodiscard]] Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
                                                  std::stop_token stop) const override;
-  [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index,
+  [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
                                                  std::stop_token stop) const override;
   [[nodiscard]] std::unique_ptr<ColourTask> makeColourTask(const Tiling& tiling, const TileIndex& index) const override;
-  [[nodiscard]] std::unique_ptr<HeightTask> makeHeightTask(const Tiling& tiling, const TileIndex& index) const override;
+  [[nodiscard]] std::unique_ptr<HeightTask> makeHeightTask(const Tiling& tiling, const TileIndex& index,
+                                                           const TileLayout& layout) const override;
   [[nodiscard]] bool dataOverlap(const Tiling& tiling, const TileIndex& index) const override;
   [[nodiscard]] bool dataFiner(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) const override;
   /// Of that level (ours); the last beyond all.

@@ -8,7 +8,7 @@ Result<ColourPixels> SteppedTileProvider::makeColours(const Tiling& /*tiling*/, 
 }
 
 Result<HeightPixels> SteppedTileProvider::makeHeights(const Tiling& /*tiling*/, const TileIndex& /*index*/,
-                                                      std::stop_token /*stop*/) const {
+                                                      const TileLayout& /*layout*/, std::stop_token /*stop*/) const {
   return failure("a layer that changes has tiles only for its steps");
 }
 

@@ -42,7 +42,7 @@ class SteppedTileProvider : public TileProvider, public TileSteps {
  private:
   [[nodiscard]] Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
                                                  std::stop_token stop) const final;
-  [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index,
+  [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
                                                  std::stop_token stop) const final;
   [[nodiscard]] bool dataOverlap(const Tiling&, const TileIndex&) const final { return false; }
   [[nodiscard]] bool dataFiner(const Tiling&, const TileIndex&, const TileLayout&) const final { return false; }

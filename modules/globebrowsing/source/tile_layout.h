@@ -37,5 +37,7 @@ struct TileLayout {
 /// The layouts of all tiles (docs/architecture.md, Sizes and budgets).
 inline constexpr TileLayout colourLayout{512, 8, Registration::PixelCentred};
 inline constexpr TileLayout heightLayout{129, 1, Registration::NodeRegistered};
+/// Heights that colours are made from: a sample for each pixel of a colour tile, and one more around, for gradients.
+inline constexpr TileLayout reliefLayout{colourLayout.interior, colourLayout.border + 1, Registration::PixelCentred};
 
 }  // namespace meridian::globebrowsing

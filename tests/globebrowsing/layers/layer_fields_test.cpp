@@ -112,7 +112,8 @@ TEST(LayerGlsl, ConstantsAreTheEnumsNumbers) {
        {"const int blendModeNormal = 0;", "const int blendModeMultiply = 1;", "const int blendModeMultiplyMix = 2;",
         "const int blendModeAdd = 3;", "const int blendModeSubtract = 4;", "const int blendModeColor = 5;",
         "const int adjustmentNone = 0;", "const int adjustmentChromaKey = 1;", "const int samplingTile = 0;",
-        "const int samplingSolidColor = 1;"}) {
+        "const int samplingSolidColor = 1;", "const int samplingColorRelief = 2;", "const int samplingHillshade = 3;",
+        "const int samplingSlope = 4;", "const int samplingIsolines = 5;"}) {
     EXPECT_THAT(text, testing::HasSubstr(line));
   }
 }

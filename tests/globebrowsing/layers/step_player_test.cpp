@@ -26,7 +26,7 @@ class TestStep final : public TileProvider {
   Result<ColourPixels> makeColours(const Tiling&, const TileIndex&, std::stop_token) const override {
     return ColourPixels{};
   }
-  Result<HeightPixels> makeHeights(const Tiling&, const TileIndex&, std::stop_token) const override {
+  Result<HeightPixels> makeHeights(const Tiling&, const TileIndex&, const TileLayout&, std::stop_token) const override {
     return HeightPixels{};
   }
   bool dataOverlap(const Tiling&, const TileIndex&) const override { return true; }

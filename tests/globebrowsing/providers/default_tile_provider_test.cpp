@@ -81,7 +81,7 @@ TEST_F(RealRasters, Etopo5GivesTheHeightsOfTheEarth) {
     GTEST_SKIP() << "NOT TESTED: install ferret-datasets for etopo5.cdf";
   }
   const GeodeticTiling tiling = earthTiling();
-  EXPECT_FALSE(etopo->heights(tiling, {}, {})) << "not open yet";
+  EXPECT_FALSE(etopo->heights(tiling, {}, heightLayout, {})) << "not open yet";
   WorkerPool workers(1);
   TileProvider::openOn(workers, etopo);
   EXPECT_NE(etopo->state(), State::NotOpened);
@@ -97,7 +97,7 @@ TEST_F(RealRasters, Etopo5GivesTheHeightsOfTheEarth) {
   for (const auto& [latitude, longitude, least, greatest] :
        {std::tuple{33.0, 88.0, 4000.0, 6500.0}, std::tuple{15.0, 150.0, -7000.0, -3000.0}}) {
     const TilePlace place = tiling.locate(latitude * degrees, longitude * degrees, 4);
-    const Result<HeightPixels> heights = etopo->heights(tiling, place.index, {});
+    const Result<HeightPixels> heights = etopo->heights(tiling, place.index, heightLayout, {});
     ASSERT_TRUE(heights) << heights.error().message();
     ASSERT_EQ(heights->size, heightLayout.size());
     const auto at = [&](double uv) { return static_cast<std::size_t>(std::lround(uv * 128.0) + 1); };
@@ -115,7 +115,7 @@ TEST_F(RealRasters, ACancelledTileIsAnErrorAndNotAPicture) {
   ASSERT_TRUE(etopo->open());
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_FALSE(etopo->heights(earthTiling(), {}, stop.get_token()));
+  EXPECT_FALSE(etopo->heights(earthTiling(), {}, heightLayout, stop.get_token()));
 }
 
 TEST_F(RealRasters, HeightKeysReachTheRaster) {
@@ -127,8 +127,8 @@ TEST_F(RealRasters, HeightKeysReachTheRaster) {
   }
   ASSERT_TRUE(plain->open());
   ASSERT_TRUE(lifted->open());
-  const auto a = plain->heights(earthTiling(), {1, 1, 0, 0}, {});
-  const auto b = lifted->heights(earthTiling(), {1, 1, 0, 0}, {});
+  const auto a = plain->heights(earthTiling(), {1, 1, 0, 0}, heightLayout, {});
+  const auto b = lifted->heights(earthTiling(), {1, 1, 0, 0}, heightLayout, {});
   ASSERT_TRUE(a && b);
   for (std::size_t i = 0; i < a->metres.size(); i += 101) {
     EXPECT_NEAR(b->metres[i], 2.0F * a->metres[i] - 100.0F, 0.01F);

@@ -105,7 +105,7 @@ TEST(SizeReference, IsATypeWithItsOlderName) {
     EXPECT_TRUE(provider->overlaps(tiling, {}));
     EXPECT_TRUE(provider->hasFinerColours(tiling, {}));
     EXPECT_TRUE(provider->colours(tiling, {1, 4, 2, 5}, {})->anyOpaque);
-    EXPECT_FALSE(provider->heights(tiling, {}, {}));
+    EXPECT_FALSE(provider->heights(tiling, {}, heightLayout, {}));
   }
   const auto bad = makeProvider(requestFor({{"Type", "SizeReferenceTileProvider"}, {"Radii", -1.0}}));
   ASSERT_FALSE(bad);

@@ -43,7 +43,7 @@ TEST(ProviderRegistry, MakesTheDefaultWithoutATypeAndKnowsOlderNames) {
   ASSERT_TRUE(solid);
   EXPECT_FALSE((*solid)->hasTiles());
   EXPECT_TRUE((*solid)->open());
-  EXPECT_FALSE((*solid)->heights(earthTiling(), {}, {}));
+  EXPECT_FALSE((*solid)->heights(earthTiling(), {}, heightLayout, {}));
 }
 
 TEST(ProviderRegistry, ListsWhatExistsWhenATypeDoesNot) {

@@ -56,14 +56,16 @@ class ServiceProvider final : public TileProvider {
   Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index, std::stop_token stop) const override {
     return source_->colours(tiling, index, colourLayout, std::move(stop));
   }
-  Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index, std::stop_token stop) const override {
-    return source_->heights(tiling, index, heightLayout, std::move(stop));
+  Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
+                                   std::stop_token stop) const override {
+    return source_->heights(tiling, index, layout, std::move(stop));
   }
   std::unique_ptr<ColourTask> makeColourTask(const Tiling& tiling, const TileIndex& index) const override {
     return source_->colourTask(tiling, index, colourLayout);
   }
-  std::unique_ptr<HeightTask> makeHeightTask(const Tiling& tiling, const TileIndex& index) const override {
-    return source_->heightTask(tiling, index, heightLayout);
+  std::unique_ptr<HeightTask> makeHeightTask(const Tiling& tiling, const TileIndex& index,
+                                             const TileLayout& layout) const override {
+    return source_->heightTask(tiling, index, layout);
   }
   bool dataOverlap(const Tiling& tiling, const TileIndex& index) const override {
     return source_->overlaps(tiling, index);

@@ -1,0 +1,124 @@
+#include "globebrowsing/gpu/height_composition.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "globebrowsing/layers/compose_heights.h"
+#include "globebrowsing/providers/raw_tile_job.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+/// What is known of tiles long gone is dropped when it is of that many.
+constexpr std::size_t mostFiner = 1 << 15;
+
+/// Raw heights of all layers -> one tile.
+class HeightCompositionJob final : public TileJob {
+ public:
+  struct Part {
+    TileDataPointer tile;
+    LayerSettings settings;
+    double opacity = 1.0;
+  };
+  struct Target {
+    std::shared_ptr<const Tiling> tiling;
+    TileIndex index;
+    TileLayout layout;
+    HeightComposition::Make make = nullptr;
+  };
+
+  HeightCompositionJob(Target target, std::vector<Part> parts) : target_(std::move(target)), parts_(std::move(parts)) {}
+
+  Result<TileDataPointer> run(const std::stop_token& /*stop*/) override {
+    std::vector<HeightPart> heights;
+    heights.reserve(parts_.size());
+    for (const Part& part : parts_) {
+      heights.push_back({&static_cast<const HeightTile&>(*part.tile).pixels(), part.settings, part.opacity});
+    }
+    return target_.make(*target_.tiling, target_.index, composeHeights(heights, target_.layout).metres);
+  }
+
+ private:
+  Target target_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace
+
+HeightComposition::HeightComposition(std::shared_ptr<const Tiling> tiling, LayerManager& layers, TileStreamer& streamer,
+                                     const TileLayout& layout, Make make)
+    : tiling_(std::move(tiling)), layers_(layers), streamer_(streamer), layout_(layout), make_(make) {
+  finer_.reserve(mostFiner);
+}
+
+HeightComposition::~HeightComposition() {
+  streamer_.forget(stream_);
+}
+
+void HeightComposition::beginFrame() {
+  const LayerGroup& heights = layers_.group(LayerGroupId::HeightLayers);
+  if (stream_ == 0 || heights.settingsVersion() != version_) {
+    version_ = heights.settingsVersion();
+    streamer_.forget(stream_);
+    stream_ = streamer_.newStream();
+    gathered_.resize(heights.enabledLayers().size());
+    finer_.clear();
+  }
+  if (finer_.size() > mostFiner) {
+    finer_.clear();
+  }
+  opening_.update(heights);
+}
+
+bool HeightComposition::gather(const TileIndex& index, double priority) {
+  const std::vector<Layer*>& enabled = layers_.group(LayerGroupId::HeightLayers).enabledLayers();
+  bool all = true;
+  for (std::size_t i = 0; i < enabled.size(); ++i) {
+    const Layer& layer = *enabled[i];
+    gathered_[i] = {};
+    if (layer.isReady() && layer.step()->tiles()->overlaps(*tiling_, index)) {
+      const LayerStep& step = *layer.step();
+      const std::uint32_t stream = layout_ == reliefLayout ? step.reliefStream() : step.stream();
+      gathered_[i] = streamer_.request({stream, index}, priority, [&] {
+        return std::make_unique<HeightJob>(step.tiles(), tiling_, index, layout_);
+      });
+      all = all && gathered_[i].state != TileAnswer::State::Pending;
+    }
+  }
+  return all;
+}
+
+TileAnswer HeightComposition::request(const TileIndex& index, double priority) {
+  if (opening_.waits()) {
+    return {TileAnswer::State::Pending};
+  }
+  const TileKey key{stream_, index};
+  if (streamer_.peek(key).state == TileAnswer::State::Absent && !gather(index, priority)) {
+    return {TileAnswer::State::Pending};
+  }
+  return streamer_.request(key, priority, [&] {
+    const std::vector<Layer*>& enabled = layers_.group(LayerGroupId::HeightLayers).enabledLayers();
+    std::vector<HeightCompositionJob::Part> parts;
+    for (std::size_t i = 0; i < enabled.size(); ++i) {
+      if (gathered_[i].state == TileAnswer::State::Ready) {
+        parts.push_back({*gathered_[i].data, enabled[i]->settings(), enabled[i]->effectiveOpacity()});
+      }
+    }
+    return std::make_unique<HeightCompositionJob>(HeightCompositionJob::Target{tiling_, index, layout_, make_},
+                                                  std::move(parts));
+  });
+}
+
+bool HeightComposition::hasFiner(const TileIndex& index) const {
+  if (const auto found = finer_.find(index); found != finer_.end()) {
+    return found->second;
+  }
+  const std::vector<Layer*>& enabled = layers_.group(LayerGroupId::HeightLayers).enabledLayers();
+  const bool finer = std::any_of(enabled.begin(), enabled.end(), [&](const Layer* layer) {
+    return layer->isReady() && layer->step()->tiles()->hasFiner(*tiling_, index, layout_);
+  });
+  return finer_.emplace(index, finer).first->second;
+}
+
+}  // namespace meridian::globebrowsing

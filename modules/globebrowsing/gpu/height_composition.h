@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "globebrowsing/gpu/opening_wait.h"
+#include "globebrowsing/layers/layer_manager.h"
+#include "globebrowsing/source/tile_layout.h"
+#include "globebrowsing/streaming/tile_streamer.h"
+
+namespace meridian::globebrowsing {
+
+/// Tiles made of the heights of all height layers, in one layout: asks for the raw heights of every enabled layer, and
+/// has a worker compose them and make the tile. When heights change (a layer toggled, a setting), all tiles are others.
+/// Render thread only; a steady frame allocates nothing.
+class HeightComposition {
+ public:
+  /// From composed heights; on a worker.
+  using Make = TileDataPointer (*)(const Tiling& tiling, const TileIndex& index, std::vector<float> heights);
+
+  /// All must outlive it. `layout` is heightLayout or reliefLayout.
+  HeightComposition(std::shared_ptr<const Tiling> tiling, LayerManager& layers, TileStreamer& streamer,
+                    const TileLayout& layout, Make make);
+  HeightComposition(const HeightComposition&) = delete;
+  HeightComposition& operator=(const HeightComposition&) = delete;
+  ~HeightComposition();
+
+  void beginFrame();
+  /// Of the tiles as the layers are at present; another whenever heights have changed.
+  [[nodiscard]] std::uint32_t stream() const { return stream_; }
+  /// The tile, or asks for what it lacks. Pending also while height layers are being opened.
+  [[nodiscard]] TileAnswer request(const TileIndex& index, double priority);
+  /// Whether some enabled height layer has finer data within the tile than the tile shows. No input or output.
+  [[nodiscard]] bool hasFiner(const TileIndex& index) const;
+
+ private:
+  /// Whether the raw heights of all layers are there (or will never be); asks for those that are missing.
+  bool gather(const TileIndex& index, double priority);
+
+  std::shared_ptr<const Tiling> tiling_;
+  LayerManager& layers_;
+  TileStreamer& streamer_;
+  TileLayout layout_;
+  Make make_;
+  mutable std::unordered_map<TileIndex, bool> finer_;  ///< what hasFiner found; asked for every frame
+  std::vector<TileAnswer> gathered_;                   ///< by enabled height layer, of the tile being looked at
+  OpeningWait opening_;
+  std::uint64_t version_ = 0;  ///< of the height layers
+  std::uint32_t stream_ = 0;
+};
+
+}  // namespace meridian::globebrowsing
