@@ -40,6 +40,12 @@ void main() {
     nightOverlayLayers = layers.yz;
     nightAndOverlay = vec4(night.xy + night.zw * uv, overlay.xy + overlay.zw * uv);
 #endif
+#if WATER
+    fromEye = position;
+#endif
+#if FADE
+    other = vec2(chunks[gl_DrawIDARB].otherLayer, chunks[gl_DrawIDARB].otherWeight);
+#endif
 #if EDGES
     unitSquare = uv;
     level = chunks[gl_DrawIDARB].level;

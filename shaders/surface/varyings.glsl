@@ -13,3 +13,9 @@ layout(location = 4) flat VARYING vec2 nightOverlayLayers;
 layout(location = 5) VARYING vec2 unitSquare;
 layout(location = 6) flat VARYING float level;
 #endif
+#if WATER
+layout(location = 7) VARYING vec3 fromEye;
+#endif
+#if FADE
+layout(location = 8) flat VARYING vec2 other;  // Chunk.otherLayer and otherWeight
+#endif

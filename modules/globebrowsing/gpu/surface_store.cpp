@@ -69,7 +69,7 @@ void SurfaceStore::beginFrame(std::uint64_t frame) {
   if (finer_.size() > mostFiner) {
     finer_.clear();
   }
-  opening_.update(heights);
+  opening_.update(heights.enabledLayers());
 }
 
 bool SurfaceStore::gather(const TileIndex& index, double priority) {

@@ -29,7 +29,7 @@ std::string_view stateName(TileProvider::State state) {
 }  // namespace
 
 Layer::Layer(LayerDescription description, LayerGroupId group, const LayerServices& services,
-             std::function<void(const Layer&, Change)> changed)
+             std::function<void(Layer&, Change)> changed)
     : PropertyOwner(description.identifier, description.name, description.description),
       type({"Type", "Type", "Where the layer's data come from", true}, layerTypeNames(),
            static_cast<int>(description.type)),
@@ -108,8 +108,11 @@ void Layer::connectProperties() {
   for (Property* property : std::initializer_list<Property*>{&enabled, &blendMode, &adjustmentType}) {
     property->onChange(tell(Change::Structure));
   }
-  for (Property* property : std::initializer_list<Property*>{&opacity, &fade, &colour, &gamma, &multiplier, &offset,
-                                                             &chromaKeyColour, &chromaKeyTolerance}) {
+  for (Property* property : std::initializer_list<Property*>{&opacity, &fade}) {
+    property->onChange(tell(Change::Opacity));
+  }
+  for (Property* property :
+       std::initializer_list<Property*>{&colour, &gamma, &multiplier, &offset, &chromaKeyColour, &chromaKeyTolerance}) {
     property->onChange(tell(Change::Settings));
   }
   setDefault.onChange([this] {

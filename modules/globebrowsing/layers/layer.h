@@ -34,10 +34,10 @@ struct LayerServices {
 class Layer final : public PropertyOwner {
  public:
   /// What a change of a property means to the rest.
-  enum class Change { Structure, Settings };
+  enum class Change { Structure, Settings, Opacity };
 
   Layer(LayerDescription description, LayerGroupId group, const LayerServices& services,
-        std::function<void(const Layer&, Change)> changed);
+        std::function<void(Layer&, Change)> changed);
   ~Layer() override;
 
   /// What its provider is made from.
@@ -50,6 +50,9 @@ class Layer final : public PropertyOwner {
   [[nodiscard]] bool isEnabled() const { return enabled.get(); }
   /// Opacity * Fade.
   [[nodiscard]] double effectiveOpacity() const { return opacity.get() * fade.get(); }
+  /// Names all that composites of the layer depend on but its opacity, and no other layer of its group.
+  [[nodiscard]] std::uint64_t version() const { return version_; }
+  void setVersion(std::uint64_t version) { version_ = version; }
   [[nodiscard]] LayerSettings settings() const { return {gamma.get(), multiplier.get(), offset.get()}; }
   [[nodiscard]] BlendMode blend() const { return static_cast<BlendMode>(blendMode.get()); }
   [[nodiscard]] Adjustment adjustment() const { return static_cast<Adjustment>(adjustmentType.get()); }
@@ -111,6 +114,7 @@ class Layer final : public PropertyOwner {
   void noteWaiting();
 
   LayerGroupId group_;
+  std::uint64_t version_ = 0;
   int zIndex_;
   bool hadZIndex_;
   Sampling sampling_;
@@ -119,7 +123,7 @@ class Layer final : public PropertyOwner {
   LayerServices services_;
   StepPlayer player_;
   LayerStepPointer step_;
-  std::function<void(const Layer&, Change)> changed_;
+  std::function<void(Layer&, Change)> changed_;
   TileProvider::State seenState_ = TileProvider::State::NotOpened;
   const Error* seenError_ = nullptr;
   std::string seenFailure_;  ///< of tiles that wait
