@@ -38,7 +38,8 @@ void main() {
     normal = normalize(normal);
     lit *= min(view.ambient + max(dot(normal, view.lightDirection), 0.0), 1.0);
 #if WATER
-    lit += ground.a * view.waterReflectance * sunGlint(normalize(vertical), -normalize(fromEye), view.lightDirection);
+    float glint = view.waterReflectance * sunGlint(normalize(vertical), -normalize(fromEye), view.lightDirection);
+    lit = mix(lit, withLight(lit, glint), ground.a);
 #endif
 #if NIGHT
     if (nightOverlayLayers.x >= 0.0) {

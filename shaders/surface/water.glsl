@@ -20,3 +20,8 @@ float sunGlint(vec3 normal, vec3 toEye, vec3 toSun) {
     float fresnel = reflectanceAlongNormal + (1.0 - reflectanceAlongNormal) * pow(1.0 - incidence, 5.0);
     return fresnel * density * unmasked / (4.0 * eye);
 }
+
+// Adds light to a colour as stored in pictures, which is about the square root of the light.
+vec3 withLight(vec3 colour, float light) {
+    return sqrt(colour * colour + light);
+}

@@ -98,7 +98,8 @@ TEST(LayerOpacities, ClaimsExactnessWhereBlendingIsLinear) {
             worst = std::max(worst, std::abs(mixed[i] - expected[i]));
           }
         }
-        EXPECT_EQ(mixesExactly(layers, 1), worst < 1e-9)
+        const bool isColorOnColor = lower == upper && lower == static_cast<int>(BlendMode::Color);
+        EXPECT_EQ(mixesExactly(layers, 1), worst < 1e-9 && !isColorOnColor)
             << group << ": " << blendModeNames()[static_cast<std::size_t>(lower)] << " below "
             << blendModeNames()[static_cast<std::size_t>(upper)] << ": " << worst;
       }
