@@ -140,7 +140,7 @@ class LayerBenchmark {
         std::filesystem::temp_directory_path() / fmt::format("meridian-bench-{}.asset", ::getpid());
     writeAsset(file);
     const auto& tiles = globe_.application().statistics().tiles;
-    const auto requested = tiles.requested;
+    const auto requested = tiles.requested.load();
     const auto threads = entries("/proc/self/task");
     const auto files = entries("/proc/self/fd");
     const auto start = Clock::now();

@@ -50,7 +50,7 @@ class Layer final : public PropertyOwner {
   [[nodiscard]] bool isEnabled() const { return enabled.get(); }
   /// Opacity * Fade.
   [[nodiscard]] double effectiveOpacity() const { return opacity.get() * fade.get(); }
-  /// Names all that composites of the layer depend on but its opacity, and no other layer of its group.
+  /// Names all that composites of the layer depend on but its opacity, and no other layer of its globe.
   [[nodiscard]] std::uint64_t version() const { return version_; }
   void setVersion(std::uint64_t version) { version_ = version; }
   [[nodiscard]] LayerSettings settings() const { return {gamma.get(), multiplier.get(), offset.get()}; }

@@ -70,7 +70,7 @@ Result<Layer*> LayerGroup::add(LayerDescription description, const LayerServices
   auto added = std::make_unique<Layer>(std::move(description), id_, services,
                                        [this](Layer& layer, auto change) { changed(layer, change); });
   Layer* layer = added.get();
-  layer->setVersion(++lastLayerVersion_);
+  layer->setVersion(nextLayerVersion());
   if (!layer->hadZIndex() && !layers_.empty()) {
     const Layer& last = *layers_.back();
     layer->setZIndex(last.hadZIndex() ? last.zIndex() + 1 : last.zIndex());
@@ -133,7 +133,7 @@ void LayerGroup::update(const Time& now) {
 void LayerGroup::changed(Layer& layer, Layer::Change change) {
   const bool isFading = change == Layer::Change::Opacity && id_ != LayerGroupId::HeightLayers;
   if (!isFading && !isToggled(layer)) {
-    layer.setVersion(++lastLayerVersion_);
+    layer.setVersion(nextLayerVersion());
   }
   if (change == Layer::Change::Structure) {
     restructure();
@@ -145,6 +145,10 @@ void LayerGroup::changed(Layer& layer, Layer::Change change) {
 /// Whether it was enabled or disabled just now: that alone changes nothing about the layer.
 bool LayerGroup::isToggled(const Layer& layer) const {
   return layer.isEnabled() != (std::find(enabled_.begin(), enabled_.end(), &layer) != enabled_.end());
+}
+
+std::uint64_t LayerGroup::nextLayerVersion() {
+  return ++lastLayerVersion_ * layerGroupCount + static_cast<std::uint64_t>(id_);
 }
 
 void LayerGroup::restructure() {

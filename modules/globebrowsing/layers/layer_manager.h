@@ -58,6 +58,7 @@ class LayerGroup final : public PropertyOwner {
   [[nodiscard]] Error noSuchLayer(std::string_view layer) const;
   void changed(Layer& layer, Layer::Change change);
   [[nodiscard]] bool isToggled(const Layer& layer) const;
+  [[nodiscard]] std::uint64_t nextLayerVersion();
   void restructure();
 
   LayerGroupId id_;

@@ -18,7 +18,7 @@ TEST_F(LayerLoadingTest, DisabledLayersTakeNoThreadFileOrRequest) {
   ASSERT_TRUE(settle());
   const auto threads = entries("/proc/self/task");
   const auto files = entries("/proc/self/fd");
-  const auto requested = statistics_.tiles.requested;
+  const auto requested = statistics_.tiles.requested.load();
   for (int n = 0; n < 500; ++n) {
     const std::string name = "L" + std::to_string(n);
     const std::string path = n % 2 == 0 ? file : "http://127.0.0.1:9/" + name + "/{z}/{x}/{y}.png";
@@ -36,9 +36,10 @@ TEST_F(LayerLoadingTest, ATogglesFirstChunkIsTheMiddlesAndSoonThere) {
   std::vector<Value> layers;
   for (int n = 0; n < 50; ++n) {
     const std::string name = "L" + std::to_string(n);
-    layers.push_back(fileLayer(name, uniformRaster(name + ".tif", {5 * n, 100, 100}, 1024), {{"Enabled", n < 8}}));
+    layers.push_back(fileLayer(name, uniformRaster(name + ".tif", {5 * n, 100, 100}, 256), {{"Enabled", n < 8}}));
   }
-  look(0.1, 0.2, 7.5e6);
+  // The corner of four tiles lies beside the middle.
+  look(0.05, 0.05, 8e6);
   RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf(layers)}});
   ASSERT_TRUE(settle());
   Layer* layer = globe.layers().group(LayerGroupId::ColorLayers).find("L49");
@@ -62,7 +63,7 @@ TEST_F(LayerLoadingTest, ATogglesFirstChunkIsTheMiddlesAndSoonThere) {
     most = std::max(most, store.composedCount() - composed);
     composed = store.composedCount();
   }));
-  EXPECT_GT(composed - start, 3U);
+  EXPECT_GE(composed - start, 2U);
   EXPECT_GE(framesUntilMiddle, 1);
   EXPECT_LE(framesUntilMiddle, 2);
   // A composite of nine layers takes more than the budget of 2 ms on a software renderer, so there is one a frame.
