@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t mostFacts = 1 << 15;
 /// Less for what is drawn and will be exchanged soon.
 constexpr double soonReplaced = 4.0;
+/// Less for what is there, and not drawn, as roots: who changes a layer wants to see that.
+constexpr double unseen = 4.0;
 
 /// The tile's unit square in the composite's texture, whose interior lies within a border.
 glm::vec4 textureTransform(const UnitSquareTransform& transform) {
@@ -214,6 +216,9 @@ CompositeStore::State CompositeStore::wantComposite(const CompositeKey& key, dou
   if (state.present && of(key.kind).hasNext) {
     priority -= soonReplaced;
   }
+  if (state.present && slotContents_[*slots_.peek(key)].drawn + 1 < frame_) {
+    priority -= unseen;
+  }
   if (const std::optional<LayerOpacity> other = otherEnd(key)) {
     request({{key.kind, key.index, CompositeKey::fadeSide}, priority}, *other);
   } else {
@@ -377,6 +382,7 @@ std::optional<CompositeStore::Placement> CompositeStore::place(CompositeKind kin
       const std::optional<std::uint32_t> slot = slots_.peek(key);
       if (slot && slotContents_[*slot].stamp >= state.shown.since) {
         slots_.use(key, frame_ + 1);
+        slotContents_[*slot].drawn = frame_;
         return mixedPlacement(key, {*slot, textureTransform(transform)});
       }
     }

@@ -126,6 +126,7 @@ class CompositeStore {
   struct Contents {
     std::uint64_t stamp = 0;
     LayerOpacities layers;
+    std::uint64_t drawn = 0;  ///< the last frame that drew it
   };
   /// What to draw a composite mixed with.
   struct Mixture {
