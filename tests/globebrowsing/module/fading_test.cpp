@@ -50,10 +50,10 @@ class FadingTest : public GlobeTest {
     }
     return most;
   }
-  /// Begins a fade of that layer (one change is none) and goes on until it is drawn by mixing alone.
+  /// Begins a fade downwards of that layer (one change is none) and goes on until it is drawn by mixing alone.
   void beginFade(RenderableGlobe& globe, Layer& layer, double opacity) {
     for (const double away : {0.02, 0.01, 0.0}) {
-      layer.fade.put(opacity > 0.5 ? opacity - away : opacity + away);
+      layer.fade.put(opacity + away);
       ASSERT_TRUE(settle());
     }
     ASSERT_TRUE(store(globe).fading().has_value());
