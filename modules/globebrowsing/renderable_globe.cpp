@@ -42,6 +42,8 @@ const Schema& RenderableGlobe::schema() {
       {"PerformShading", Type::Boolean, "whether the light source lights it"},
       {"UseAccurateNormals", Type::Boolean, "whether relief is shaded"},
       {"AmbientIntensity", Type::Number, "share of the light that reaches the night side", false, 0.0, 1.0},
+      {"WaterReflectance", Type::Number, "scales the Sun's glint on water; 1: as of a sea in a breeze", false, 0.0,
+       10.0},
       {"RenderAtDistance", Type::Boolean, "whether it is drawn when smaller than a pixel"},
       {"TargetLodScaleFactor", Type::Number, "15: one texel a pixel", false, 1.0, 50.0},
       {"Tag", Type::StringOrStrings, "names by which scripts can address it"},
@@ -81,8 +83,9 @@ RenderableGlobe::~RenderableGlobe() {
 }
 
 void RenderableGlobe::addProperties() {
-  for (Property* property : std::initializer_list<Property*>{&performShading, &useAccurateNormals, &renderAtDistance,
-                                                             &ambientIntensity, &targetLodScaleFactor}) {
+  for (Property* property :
+       std::initializer_list<Property*>{&performShading, &useAccurateNormals, &renderAtDistance, &ambientIntensity,
+                                        &waterReflectance, &targetLodScaleFactor}) {
     addProperty(*property);
   }
   for (Property* property :
@@ -153,7 +156,11 @@ double RenderableGlobe::apparentRadius(const FrameContext& frame) const {
 GlobeTiles::Options RenderableGlobe::poolOptions(TexturePoolShares::Share share) const {
   std::size_t most = 1;
   for (const CompositeKind kind : allCompositeKinds) {
-    most = std::max(most, layers_.group(layerGroup(kind)).enabledLayers().size());
+    std::size_t count = 0;
+    for (const LayerGroupId group : layerGroups(kind)) {
+      count += layers_.group(group).enabledLayers().size();
+    }
+    most = std::max(most, count);
   }
   // In steps, and never less than before, so that toggling layers does not make surfaces anew.
   const auto rawTiles = static_cast<std::uint32_t>((most + 7) / 8 * 8);
@@ -225,6 +232,7 @@ SurfaceSettings RenderableGlobe::settings() const {
   settings.showEdges = showChunkEdges.get();
   settings.ambient = ambientIntensity.get();
   settings.opacity = opacity.get();
+  settings.waterReflectance = waterReflectance.get();
   settings.compositionMilliseconds = services_.compositionBudget.get();
   return settings;
 }

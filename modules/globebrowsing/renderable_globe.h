@@ -63,6 +63,10 @@ class RenderableGlobe final : public Renderable, public Ground {
       {"RenderAtDistance", "Render at distance", "Whether it is drawn when smaller than a pixel"}, false};
   FloatProperty ambientIntensity{
       {"AmbientIntensity", "Ambient light", "Share of the light that reaches the night side"}, 0.05, {0.0, 1.0}};
+  FloatProperty waterReflectance{
+      {"WaterReflectance", "Water reflectance", "Scales the Sun's glint on water; 1: as of a sea in a breeze"},
+      1.0,
+      {0.0, 10.0}};
   FloatProperty targetLodScaleFactor{
       {"TargetLodScaleFactor", "Level of detail", "15: one texel a pixel; twice that is twice as fine"},
       15.0,

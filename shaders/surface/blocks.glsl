@@ -4,6 +4,7 @@ layout(std140, binding = 0) uniform ViewBlock {
     vec3 lightDirection;    // unit, model axes, towards the light
     float ambient;
     float opacity;
+    float waterReflectance;
 } view;
 
 struct Chunk {
@@ -18,6 +19,8 @@ struct Chunk {
     float normalScale;      // normal offset = (texel * 255 - 128) / 127 * this
     float flare;            // metres: how far a skirt's foot stands out
     float lift;             // metres: by how much all vertices are raised
+    float otherLayer;       // array layer of the composite that the fading one is mixed with
+    float otherWeight;      // how much of it, 0 to 1
 };
 
 // Those of one call, in its order. As many as in chunk_blocks.h; 16 KiB is what every driver has.

@@ -13,10 +13,22 @@ layout(binding = 1) uniform sampler2DArray normalOffsets;
 
 layout(location = 0) out vec4 colour;
 
+#if FADE
+#include "surface/fade.glsl"
+#endif
+#if WATER
+#include "surface/water.glsl"
+#endif
+
 void main() {
     // Without any composite the grey that composition starts from.
     float base = baseNormalsLayers.x;
-    vec3 lit = base < 0.0 ? vec3(0.3) : texture(composites, vec3(baseAndNormals.xy, base)).rgb;
+#if FADE == FADE_BASE
+    vec4 ground = base < 0.0 ? vec4(vec3(0.3), 0.0) : mixed(baseAndNormals.xy, base);
+#else
+    vec4 ground = base < 0.0 ? vec4(vec3(0.3), 0.0) : texture(composites, vec3(baseAndNormals.xy, base));
+#endif
+    vec3 lit = ground.rgb;
 #if SHADING
     // The normal that filtering gives is not brought back to unit length: light on the mean of normals is the mean of the
     // light on them.
@@ -25,9 +37,17 @@ void main() {
     sun += dot(texture(normalOffsets, vec3(baseAndNormals.zw, baseNormalsLayers.y)).xyz, sunOnOffset.xyz) + sunOnOffset.w;
 #endif
     lit *= min(view.ambient + max(sun, 0.0), 1.0);
+#if WATER
+    float glint = view.waterReflectance * sunGlint(normalize(vertical), -normalize(fromEye), view.lightDirection);
+    lit = mix(lit, withLight(lit, glint), ground.a);
+#endif
 #if NIGHT
     if (nightOverlayLayers.x >= 0.0) {
+#if FADE == FADE_NIGHT
+        vec4 night = mixedByAlpha(nightAndOverlay.xy, nightOverlayLayers.x);
+#else
         vec4 night = texture(composites, vec3(nightAndOverlay.xy, nightOverlayLayers.x));
+#endif
         float darkness = clamp(-3.0 * dot(normalize(normalize(vertical) - 0.2 * view.lightDirection), view.lightDirection), 0.0, 1.0);
         lit = mix(lit, night.rgb, night.a * darkness * max(night.r, max(night.g, night.b)));
     }
@@ -35,7 +55,11 @@ void main() {
 #endif
 #if OVERLAY
     if (nightOverlayLayers.y >= 0.0) {
+#if FADE == FADE_OVERLAY
+        vec4 overlay = mixedByAlpha(nightAndOverlay.zw, nightOverlayLayers.y);
+#else
         vec4 overlay = texture(composites, vec3(nightAndOverlay.zw, nightOverlayLayers.y));
+#endif
         lit = mix(lit, overlay.rgb, overlay.a);
     }
 #endif

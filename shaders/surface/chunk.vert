@@ -38,7 +38,7 @@ void main() {
     sunOnOffset = vec4(255.0 * scaled, -128.0 * (scaled.x + scaled.y + scaled.z));
 #endif
 #endif
-#if NIGHT
+#if NIGHT || WATER
     vertical = ellipsoidNormal;
 #endif
 #if NIGHT || OVERLAY
@@ -46,6 +46,12 @@ void main() {
     vec4 overlay = chunks[gl_DrawIDARB].overlay;
     nightOverlayLayers = layers.yz;
     nightAndOverlay = vec4(night.xy + night.zw * uv, overlay.xy + overlay.zw * uv);
+#endif
+#if WATER
+    fromEye = position;
+#endif
+#if FADE
+    other = vec2(chunks[gl_DrawIDARB].otherLayer, chunks[gl_DrawIDARB].otherWeight);
 #endif
 #if EDGES
     unitSquare = uv;

@@ -8,7 +8,7 @@ layout(location = 2) VARYING float sunOnEllipsoid;        // ellipsoid's normal 
 layout(location = 3) flat VARYING vec4 sunOnOffset;       // normal offset . light = xyz . texel + w
 #endif
 #endif
-#if NIGHT
+#if NIGHT || WATER
 layout(location = 4) VARYING vec3 vertical;
 #endif
 #if NIGHT || OVERLAY
@@ -18,4 +18,10 @@ layout(location = 6) flat VARYING vec2 nightOverlayLayers;
 #if EDGES
 layout(location = 7) VARYING vec2 unitSquare;
 layout(location = 8) flat VARYING float level;
+#endif
+#if WATER
+layout(location = 9) VARYING vec3 fromEye;
+#endif
+#if FADE
+layout(location = 10) flat VARYING vec2 other;  // Chunk.otherLayer and otherWeight
 #endif

@@ -131,7 +131,7 @@ double FloorDraw::frame() {
   renderer.beginFrame();
   renderer.target().bind();
   renderer.target().clear({0.0F, 0.0F, 0.0F, 1.0F});
-  globe_.surface().renderer().bindForDrawing(globe_.surface().tiles(), night_, sampling_);
+  globe_.surface().renderer().bindForDrawing(globe_.surface().tiles(), {night_, false}, sampling_);
   glBindVertexArray(vertexArray_.id());
   glBindTextureUnit(chunk_bindings::normalUnit, normals_.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, viewBlock_.id());

@@ -89,13 +89,14 @@ Result<void> SettledGlobe::settle() {
     if (millisecondsSince(start) > 60000.0) {
       return failure("the view does not settle: " + renderer_->settled().reason);
     }
-  } while (!renderer_->settled().complete || isPrefetching());
+  } while (!renderer_->settled().complete || isPreparing());
   return {};
 }
 
-bool SettledGlobe::isPrefetching() const {
+bool SettledGlobe::isPreparing() const {
   const auto& tiles = application_->statistics().tiles;
-  return tiles.requested > tiles.loaded + tiles.failed + tiles.cancelled;
+  return tiles.requested > tiles.loaded + tiles.failed + tiles.cancelled ||
+         renderer_->graphics().programs().pending() > 0;
 }
 
 double SettledGlobe::frame() {
@@ -113,6 +114,10 @@ double SettledGlobe::frame() {
 
 void SettledGlobe::blit() {
   renderer_->target().blit(showing_.id(), size_);
+}
+
+void SettledGlobe::readShown(std::vector<std::uint8_t>& pixels) const {
+  glGetTextureImage(shown_.id(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(pixels.size()), pixels.data());
 }
 
 globebrowsing::ChunkedSurface& SettledGlobe::surface() {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "globebrowsing/renderable_globe.h"
 #include "globebrowsing/surface/chunked_surface.h"
@@ -26,6 +28,8 @@ class SettledGlobe {
   double frame();
   /// Copies the drawn frame, as a window would show it.
   void blit();
+  /// The frame shown last, RGBA.
+  void readShown(std::vector<std::uint8_t>& pixels) const;
 
   [[nodiscard]] globebrowsing::ChunkedSurface& surface();
   [[nodiscard]] app::Application& application() { return *application_; }
@@ -35,8 +39,8 @@ class SettledGlobe {
 
  private:
   SettledGlobe() = default;
-  /// Whether tiles beside the picture are still under way: workers would be measured, too.
-  [[nodiscard]] bool isPrefetching() const;
+  /// Whether tiles beside the picture or programs for later are still under way: they would be measured, too.
+  [[nodiscard]] bool isPreparing() const;
 
   std::unique_ptr<graphics::Context> context_;
   std::unique_ptr<app::Application> application_;

@@ -17,7 +17,8 @@ struct ViewBlock {
   glm::vec3 lightDirection{1.0F, 0.0F, 0.0F};
   float ambient = 0.0F;
   float opacity = 1.0F;
-  std::array<float, 3> padding{};
+  float waterReflectance = 1.0F;
+  std::array<float, 2> padding{};
 };
 static_assert(sizeof(ViewBlock) == 96);
 
@@ -32,7 +33,9 @@ struct ChunkParameters {
   float normalScale = 0.0F;  ///< normal offset = (texel * 255 - 128) / 127 * this
   float flare = 0.0F;        ///< metres: how far a skirt's foot stands out
   float lift = 0.0F;         ///< metres: by how much all vertices are raised
-  std::array<float, 3> padding{};
+  float otherLayer = 0.0F;   ///< array layer of the composite that the fading one is mixed with
+  float otherWeight = 0.0F;  ///< how much of it, 0 to 1
+  float padding = 0.0F;
 };
 static_assert(sizeof(ChunkParameters) == 176);
 

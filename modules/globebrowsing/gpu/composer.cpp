@@ -34,7 +34,8 @@ static_assert(sizeof(Placement) == 32);
 struct PlacementHead {
   glm::vec4 background{0.0F};
   int count = 0;
-  std::array<int, 3> padding{};
+  int waterFrom = 0;
+  std::array<int, 2> padding{};
 };
 static_assert(sizeof(PlacementHead) == 32);
 
@@ -52,24 +53,39 @@ glm::vec4 pixelTransform(const UnitSquareTransform& transform) {
   return glm::vec4(glm::vec2(offset), glm::vec2(scale));
 }
 
-std::string call(std::size_t layer, std::string_view sampling, std::string_view blend, std::string_view adjustment) {
-  return fmt::format("    result = composePart(result, {}, {}, {}, {});\n", layer, sampling, blend, adjustment);
-}
-
 std::string unrolled(const StructureKey& key) {
   std::string body;
   for (std::size_t i = 0; i < key.layers().size(); ++i) {
     const LayerStructure& layer = key.layers()[i];
-    body += call(i, fmt::format("sampling{}", name(layer.sampling)), fmt::format("blendMode{}", name(layer.blendMode)),
-                 fmt::format("adjustment{}", name(layer.adjustment)));
+    body += fmt::format("    {0} = composePart({0}, {1}, sampling{2}, blendMode{3}, adjustment{4});\n",
+                        layer.group == LayerGroupId::WaterMasks ? "water" : "result", i, name(layer.sampling),
+                        name(layer.blendMode), name(layer.adjustment));
   }
   return body;
 }
 
 constexpr std::string_view loopBody =
     "    for (int i = 0; i < part.count; ++i) {\n"
-    "        result = composePart(result, i, layers[i].sampling, layers[i].blendMode, layers[i].adjustment);\n"
+    "        vec4 below = i < part.waterFrom ? result : water;\n"
+    "        below = composePart(below, i, layers[i].sampling, layers[i].blendMode, layers[i].adjustment);\n"
+    "        result = i < part.waterFrom ? below : result;\n"
+    "        water = i < part.waterFrom ? water : below;\n"
     "    }\n";
+
+/// Where a layer's opacity lies among its fields.
+std::size_t opacityOffset() {
+  const auto& fields = layerFields().fields();
+  return std::find_if(fields.begin(), fields.end(), [](const LayerField& field) { return field.name == "opacity"; })
+      ->offset;
+}
+
+/// How many of the parts are no water masks; those come last.
+int waterFrom(std::span<const CompositionPart> parts) {
+  const auto first = std::find_if(parts.begin(), parts.end(), [](const CompositionPart& part) {
+    return part.layer->group() == LayerGroupId::WaterMasks;
+  });
+  return static_cast<int>(first - parts.begin());
+}
 
 /// Draws once as compose() does, into textures of its own that are not powers of two either.
 void warmComposition(GLuint program, std::size_t layers) {
@@ -144,7 +160,8 @@ bool isHidingAll(std::span<const CompositionPart> parts) {
     return false;
   }
   const CompositionPart& top = parts.back();
-  return top.tile->isOpaque() && top.transform == UnitSquareTransform{} && top.layer->showsTilesUnchanged();
+  return top.tile->isOpaque() && top.transform == UnitSquareTransform{} && top.opacity == 1.0F &&
+         top.layer->group() != LayerGroupId::WaterMasks && top.layer->showsTilesUnchanged();
 }
 
 void upload(const graphics::Texture& array, std::uint32_t slot, const ColourTile& tile) {
@@ -353,10 +370,11 @@ void Composer::bindBlocks(CompositeKind kind, std::span<const CompositionPart> p
   uniforms_.reserve(uniforms_.aligned(count * stride) + uniforms_.aligned(placementBytes));
   const UniformRing::Block settings = uniforms_.take(count * stride);
   const UniformRing::Block placements = uniforms_.take(placementBytes);
-  const PlacementHead head{background(kind), static_cast<int>(parts.size()), {}};
+  const PlacementHead head{background(kind), static_cast<int>(parts.size()), waterFrom(parts), {}};
   std::memcpy(placements.bytes, &head, sizeof(head));
   for (std::size_t i = 0; i < parts.size(); ++i) {
     layerFields().write(*parts[i].layer, {settings.bytes + i * stride, stride});
+    std::memcpy(settings.bytes + i * stride + opacityOffset(), &parts[i].opacity, sizeof(float));
     const Source& source = sourcesOfParts_[i];
     const Placement placement{pixelTransform(parts[i].transform), source.slot, static_cast<float>(parts[i].pixelMetres),
                               source.ramp, source.stops};

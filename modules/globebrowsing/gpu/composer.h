@@ -29,10 +29,12 @@ struct CompositionPart {
   UnitSquareTransform transform;       ///< the composite's unit square in that tile's
   const ReliefTile* relief = nullptr;  ///< of layers that colour heights
   double pixelMetres = 0.0;            ///< of the composite; for those
+  float opacity = 1.0F;                ///< as which the layer is composed
 };
 
-/// Draws composites: the layers of one kind, blended once per tile instead of once per fragment (after Kooima; Bladin &
-/// Broberg 2016 compose per fragment). A composite is one layer of an array texture, with three half-size levels.
+/// Draws composites: the layers of one kind, lowest first and those of each group together, blended once per tile
+/// instead of once per fragment (after Kooima; Bladin & Broberg 2016 compose per fragment). A composite is one layer of
+/// an array texture, with three half-size levels.
 ///
 /// For each structure key it generates a program, which is built in the background; until that is ready a program that
 /// loops over the layers at run time composes. Settings are uniforms and never recompile. Render thread only.

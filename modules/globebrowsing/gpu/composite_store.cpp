@@ -13,15 +13,10 @@ namespace {
 
 /// Facts of tiles long gone are dropped when there are that many.
 constexpr std::size_t mostFacts = 1 << 15;
-/// Of composites of the next step in time: among the tiles that selection needs (1 to 2), roots before all (3).
-constexpr double nextPriority = 1.5;
-constexpr double nextRootPriority = 3.0;
 /// Less for what is drawn and will be exchanged soon.
 constexpr double soonReplaced = 4.0;
-/// Of raw tiles that nobody sees yet: after all others.
-constexpr double aheadPriority = -5.0;
-/// At most that share of the tile cache is fetched ahead for each kind.
-constexpr std::size_t aheadShare = 8;
+/// Less for what is there, and not drawn, as roots: who changes a layer wants to see that.
+constexpr double unseen = 4.0;
 
 /// The tile's unit square in the composite's texture, whose interior lies within a border.
 glm::vec4 textureTransform(const UnitSquareTransform& transform) {
@@ -31,30 +26,12 @@ glm::vec4 textureTransform(const UnitSquareTransform& transform) {
   return glm::vec4(glm::vec2(offset), glm::vec2(scale));
 }
 
-TileIndex ancestorOf(const Tiling& tiling, TileIndex index, int level) {
-  while (index.level > level) {
-    index = *tiling.parent(index);
-  }
-  return index;
-}
-
 bool isTile(const Layer& layer) {
   return layer.sampling() == Sampling::Tile;
 }
 
 TileDataPointer makeRelief(const Tiling& tiling, const TileIndex& index, std::vector<float> heights) {
   return std::make_shared<const ReliefTile>(tiling, index, heights);
-}
-
-/// Whether going from one step to another may lead over `step`: it is the first, the other, or between them in time.
-bool isOnTheWay(const LayerStepPointer& from, const LayerStepPointer& step, const LayerStepPointer& to) {
-  if (from == nullptr || step == nullptr || to == nullptr || step == from || step == to) {
-    return true;
-  }
-  const Time a = from->when().begin;
-  const Time b = step->when().begin;
-  const Time c = to->when().begin;
-  return (a < b && b < c) || (c < b && b < a);
 }
 
 }  // namespace
@@ -67,7 +44,7 @@ CompositeStore::CompositeStore(std::shared_ptr<const Tiling> tiling, LayerManage
       composer_(std::move(composer)),
       relief_(std::move(tiling), layers, streamer, reliefLayout, makeRelief),
       slots_(capacity),
-      slotStamps_(capacity) {
+      slotContents_(capacity) {
   facts_.reserve(mostFacts);
 }
 
@@ -87,149 +64,54 @@ void CompositeStore::beginFrame(std::uint64_t frame) {
   if (changed) {
     facts_.clear();
   }
+  updateFading();
+}
+
+std::uint64_t CompositeStore::settingsVersion(CompositeKind kind) const {
+  std::uint64_t sum = 0;
+  for (const LayerGroupId group : layerGroups(kind)) {
+    sum += layers_.group(group).settingsVersion();
+  }
+  return sum;
 }
 
 bool CompositeStore::updateKind(CompositeKind kind) {
   KindState& state = of(kind);
-  const LayerGroup& group = layers_.group(layerGroup(kind));
-  const std::vector<Layer*>& enabled = group.enabledLayers();
-  const bool colourHeights =
-      std::any_of(enabled.begin(), enabled.end(), [](const Layer* layer) { return isRelief(layer->sampling()); });
-  const std::uint32_t reliefStream = colourHeights ? relief_.stream() : 0;
-  const bool changed = state.version != group.settingsVersion() || state.reliefStream != reliefStream;
+  bool changed = state.version != settingsVersion(kind);
   if (changed) {
-    state.version = group.settingsVersion();
-    state.reliefStream = reliefStream;
-    takeSteps(state, enabled);
+    state.version = settingsVersion(kind);
+    takeLayers(kind);
+    takeSteps(state);
+  }
+  const bool coloursHeights = std::any_of(state.layers.begin(), state.layers.end(),
+                                          [](const Layer* layer) { return isRelief(layer->sampling()); });
+  if (const std::uint32_t stream = coloursHeights ? relief_.stream() : 0; state.reliefStream != stream) {
+    state.reliefStream = stream;
     state.shown.stamp = ++state.lastStamp;
+    state.next.stamp = ++state.lastStamp;  // what there is of it will do, and is composed anew after the exchange
+    changed = true;
   }
-  state.opening.update(group);
+  state.opening.update(state.layers);
+  state.fade.update(state.layers, frame_);
   if (inUse(kind)) {
-    composer_->setStructure(kind, group.structureKey());
+    composer_->setStructure(kind, state.key);
   }
-  state.hasSteps = std::any_of(enabled.begin(), enabled.end(),
+  state.hasSteps = std::any_of(state.layers.begin(), state.layers.end(),
                                [](const Layer* layer) { return layer->provider()->steps() != nullptr; });
   if (state.hasSteps) {
-    beginNext(state, enabled);
+    beginNext(state);
   }
   return changed;
 }
 
-/// Layers came, went or were changed: those that stay also stay at the step that is drawn.
-void CompositeStore::takeSteps(KindState& state, const std::vector<Layer*>& enabled) {
-  std::vector<LayerStepPointer> steps;
-  for (const Layer* layer : enabled) {
-    const auto drawn = std::find_if(state.shown.steps.begin(), state.shown.steps.end(), [layer](const auto& step) {
-      return step != nullptr && step->source() == layer->provider().get();
-    });
-    steps.push_back(drawn != state.shown.steps.end() ? *drawn : layer->step());
-  }
-  state.shown.steps = std::move(steps);
-  if (state.hasNext && state.next.steps.size() == enabled.size() &&
-      std::equal(enabled.begin(), enabled.end(), state.next.steps.begin(), [](const Layer* layer, const auto& step) {
-        return step == nullptr || step->source() == layer->provider().get();
-      })) {
-    // What of the next step was composed before the change will do, and is composed anew after the exchange.
-    state.next.stamp = ++state.lastStamp;
-  } else {
-    state.hasNext = false;
-  }
-}
-
-void CompositeStore::beginNext(KindState& state, const std::vector<Layer*>& enabled) {
-  if (state.hasNext) {
-    // What is on the way to the present step is finished first, or a time that runs faster would never show any.
-    bool onTheWay = true;
-    for (std::size_t i = 0; i < enabled.size(); ++i) {
-      onTheWay = onTheWay && isOnTheWay(state.shown.steps[i], state.next.steps[i], enabled[i]->step());
-    }
-    if (onTheWay) {
-      return;
-    }
-    state.hasNext = false;
-  }
-  // Where nothing is drawn the last step is finished first as well, or a surface that is still filled never would be.
-  if (state.drawn.empty() && lackedSome_) {
-    return;
-  }
-  const auto isOther = [](const Layer* layer, const LayerStepPointer& step) {
-    return layer->step() != nullptr && layer->step() != step;
-  };
-  if (std::equal(enabled.begin(), enabled.end(), state.shown.steps.begin(),
-                 [&](const Layer* layer, const LayerStepPointer& step) { return !isOther(layer, step); })) {
-    return;
-  }
-  state.next.steps.clear();
-  for (std::size_t i = 0; i < enabled.size(); ++i) {
-    state.next.steps.push_back(enabled[i]->step() != nullptr ? enabled[i]->step() : state.shown.steps[i]);
-  }
-  state.next.side = state.shown.side == 0 ? 1 : 0;
-  state.next.since = state.next.stamp = ++state.lastStamp;
-  state.hasNext = true;
-  state.crowded = false;
-  state.nextOwnerLevels.clear();
-}
-
-void CompositeStore::exchange(KindState& state) {
-  if (state.crowded) {
-    // Without room for both, the new ones are composed over the old.
-    state.shown.steps.swap(state.next.steps);
-    state.shown.stamp = ++state.lastStamp;
-  } else {
-    std::swap(state.shown, state.next);
-  }
-  state.next.steps.clear();
-  state.hasNext = false;
-  facts_.clear();
-}
-
-bool CompositeStore::nextCovers(CompositeKind kind) const {
-  const KindState& state = of(kind);
-  for (int root = 0; root < tiling_->rootCount(); ++root) {
-    const TileIndex index{static_cast<std::uint8_t>(root), 0, 0, 0};
-    if (!state.drawn.empty() && !stateOf(nextKey(kind, index, 0)).present) {
-      return false;
-    }
-  }
-  return std::all_of(state.drawn.begin(), state.drawn.end(), [&](const Drawn& drawn) {
-    return stateOf(nextKey(kind, drawn.index, drawn.colourLevel)).present;
-  });
-}
-
-void CompositeStore::wantNext(CompositeKind kind) {
-  for (int root = 0; root < tiling_->rootCount(); ++root) {
-    wantComposite(nextKey(kind, {static_cast<std::uint8_t>(root), 0, 0, 0}, 0), nextRootPriority);
-  }
-  for (const Drawn& drawn : of(kind).drawn) {
-    wantComposite(nextKey(kind, drawn.index, drawn.colourLevel), nextPriority);
-  }
-}
-
-void CompositeStore::fetchAhead(CompositeKind kind) {
-  const std::size_t tileBytes = std::size_t{4} * colourLayout.size() * colourLayout.size();
-  std::size_t left = streamer_.budget() / aheadShare / tileBytes;
-  for (const Layer* layer : layers_.group(layerGroup(kind)).enabledLayers()) {
-    double priority = aheadPriority;
-    for (const LayerStepPointer& step : layer->ahead()) {
-      const std::shared_ptr<TileProvider>& tiles = step->tiles();
-      for (const Drawn& drawn : of(kind).drawn) {
-        TileIndex index = drawn.index;
-        while (index.level > 0 &&
-               (index.level > drawn.colourLevel || !tiles->hasFinerColours(*tiling_, *tiling_->parent(index)))) {
-          index = *tiling_->parent(index);
-        }
-        if (!tiles->overlaps(*tiling_, index)) {
-          continue;
-        }
-        if (left == 0) {
-          return;
-        }
-        --left;
-        streamer_.request({step->stream(), index}, priority,
-                          [&] { return std::make_unique<ColourJob>(tiles, tiling_, index); });
-      }
-      priority -= 1.0;
-    }
+void CompositeStore::takeLayers(CompositeKind kind) {
+  KindState& state = of(kind);
+  state.layers.clear();
+  state.key = {};
+  for (const LayerGroupId id : layerGroups(kind)) {
+    const LayerGroup& group = layers_.group(id);
+    state.layers.insert(state.layers.end(), group.enabledLayers().begin(), group.enabledLayers().end());
+    state.key.append(group.structureKey());
   }
 }
 
@@ -238,11 +120,11 @@ void CompositeStore::endFrame() {
 }
 
 bool CompositeStore::inUse(CompositeKind kind) const {
-  return kind == CompositeKind::Base || !layers_.group(layerGroup(kind)).enabledLayers().empty();
+  return kind == CompositeKind::Base || !of(kind).layers.empty();
 }
 
 bool CompositeStore::anyFiner(CompositeKind kind, const Generation& generation, const TileIndex& index) const {
-  const std::vector<Layer*>& enabled = layers_.group(layerGroup(kind)).enabledLayers();
+  const std::vector<Layer*>& enabled = of(kind).layers;
   for (std::size_t i = 0; i < enabled.size() && i < generation.steps.size(); ++i) {
     if (isFiner(*enabled[i], generation.steps[i], index)) {
       return true;
@@ -275,16 +157,11 @@ const CompositeStore::Facts& CompositeStore::facts(const TileIndex& index) const
   return facts_.emplace(index, made).first->second;
 }
 
-std::uint8_t CompositeStore::nextOwnerLevel(CompositeKind kind, const TileIndex& index) const {
-  KindState& state = kinds_[static_cast<std::size_t>(kind)];
-  if (const auto found = state.nextOwnerLevels.find(index); found != state.nextOwnerLevels.end()) {
-    return found->second;
+TileIndex CompositeStore::ancestor(TileIndex index, int level) const {
+  while (index.level > level) {
+    index = *tiling_->parent(index);
   }
-  const std::optional<TileIndex> parent = tiling_->parent(index);
-  const bool own = !parent || anyFiner(kind, state.next, *parent);
-  const std::uint8_t level = own ? index.level : nextOwnerLevel(kind, *parent);
-  state.nextOwnerLevels.emplace(index, level);
-  return level;
+  return index;
 }
 
 bool CompositeStore::hasFiner(const TileIndex& index) const {
@@ -293,12 +170,7 @@ bool CompositeStore::hasFiner(const TileIndex& index) const {
 
 CompositeKey CompositeStore::shownKey(CompositeKind kind, const TileIndex& index, int colourLevel) const {
   const int level = std::min<int>(colourLevel, facts(index).ownerLevel[static_cast<std::size_t>(kind)]);
-  return {kind, ancestorOf(*tiling_, index, level), of(kind).shown.side};
-}
-
-CompositeKey CompositeStore::nextKey(CompositeKind kind, const TileIndex& index, int colourLevel) const {
-  const int level = std::min<int>(colourLevel, nextOwnerLevel(kind, index));
-  return {kind, ancestorOf(*tiling_, index, level), of(kind).next.side};
+  return {kind, ancestor(index, level), of(kind).shown.side};
 }
 
 const CompositeStore::Generation& CompositeStore::generationOf(const CompositeKey& key) const {
@@ -308,8 +180,19 @@ const CompositeStore::Generation& CompositeStore::generationOf(const CompositeKe
 
 CompositeStore::State CompositeStore::stateOf(const CompositeKey& key) const {
   const std::optional<std::uint32_t> slot = slots_.peek(key);
+  if (!slot) {
+    return {false, false};
+  }
+  const Contents& contents = slotContents_[*slot];
   const Generation& generation = generationOf(key);
-  return {slot && slotStamps_[*slot] >= generation.since, slot && slotStamps_[*slot] == generation.stamp};
+  if (contents.stamp < generation.since || contents.stamp != generation.stamp) {
+    return {contents.stamp >= generation.since, false};
+  }
+  if (difference(contents.layers, of(key.kind).fade.opacities()).kind == OpacityDifference::Kind::None) {
+    return {true, true};
+  }
+  const std::optional<Mixture> mixed = mixture(key);
+  return {true, mixed && mixed->exact};
 }
 
 CompositeStore::State CompositeStore::state(const TileIndex& index, int colourLevel) const {
@@ -338,38 +221,62 @@ CompositeStore::State CompositeStore::wantComposite(const CompositeKey& key, dou
   slots_.use(key, frame_);
   const State state = stateOf(key);
   const bool isNext = &generationOf(key) == &of(key.kind).next;
+  if (!isNext && state.present) {
+    if (const std::optional<Mixture> mixed = mixture(key)) {
+      useOther(key, frame_);
+      if (state.current) {
+        endMixing(key, *mixed, priority);
+      }
+    }
+  }
   // What of the next step is there already is brought up to date after the exchange: settings that change all the time
   // would put that off for ever.
   if (state.current || (isNext && state.present)) {
     return state;
   }
-  // Many chunks may draw the same ancestor's composite.
-  if (std::any_of(requests_.begin(), requests_.end(), [&](const Request& r) { return r.key == key; })) {
-    return state;
-  }
-  missing_ += isNext ? 0 : 1;
   if (state.present && of(key.kind).hasNext) {
     priority -= soonReplaced;
   }
-  if (composer_->ready(key.kind) && !of(key.kind).opening.waits()) {
-    Request request{key, priority, parts_.size(), 0};
-    if (gather(key, priority)) {
+  if (state.present && slotContents_[*slots_.peek(key)].drawn + 1 < frame_) {
+    priority -= unseen;
+  }
+  if (const std::optional<LayerOpacity> other = otherEnd(key)) {
+    request({{key.kind, key.index, CompositeKey::fadeSide}, priority}, *other);
+  } else {
+    request({key, priority});
+  }
+  return state;
+}
+
+void CompositeStore::request(Request request, const LayerOpacity& other) {
+  const KindState& state = of(request.key.kind);
+  // Many chunks may draw the same ancestor's composite.
+  if (std::any_of(requests_.begin(), requests_.end(), [&](const Request& r) { return r.key == request.key; })) {
+    return;
+  }
+  const bool isNext = &generationOf(request.key) == &state.next;
+  request.isMissing = request.isMissing && !isNext;
+  missing_ += request.isMissing ? 1 : 0;
+  if (composer_->ready(request.key.kind) && !state.opening.waits()) {
+    request.firstPart = parts_.size();
+    if (gather(request.key, request.priority, other)) {
       request.partCount = parts_.size() - request.firstPart;
       requests_.push_back(request);
     } else {
       parts_.resize(request.firstPart);
     }
   }
-  return state;
 }
 
-bool CompositeStore::gather(const CompositeKey& key, double priority) {
+bool CompositeStore::gather(const CompositeKey& key, double priority, const LayerOpacity& other) {
   bool all = true;
-  const std::vector<Layer*>& enabled = layers_.group(layerGroup(key.kind)).enabledLayers();
+  const KindState& state = of(key.kind);
   const Generation& generation = generationOf(key);
-  for (std::size_t i = 0; i < enabled.size(); ++i) {
+  for (std::size_t i = 0; i < state.layers.size(); ++i) {
+    const LayerOpacity& now = state.fade.opacities()[i];
     CompositionPart part;
-    part.layer = enabled[i];
+    part.layer = state.layers[i];
+    part.opacity = now.version == other.version ? other.opacity : now.opacity;
     all = gatherPart(part, generation.steps[i], key, priority) && all;
     parts_.push_back(part);
   }
@@ -410,7 +317,11 @@ bool CompositeStore::gatherPart(CompositionPart& part, const LayerStepPointer& s
 void CompositeStore::keep(const TileIndex& index, int colourLevel) {
   for (const CompositeKind kind : allCompositeKinds) {
     if (inUse(kind)) {
-      slots_.use(shownKey(kind, index, colourLevel), frame_);
+      const CompositeKey key = shownKey(kind, index, colourLevel);
+      slots_.use(key, frame_);
+      if (mixture(key)) {
+        useOther(key, frame_);
+      }
     }
   }
 }
@@ -436,13 +347,11 @@ void CompositeStore::compose(double milliseconds) {
     if (composed == Composed::NoRawTiles) {
       break;
     }
-    const bool isNext = &generationOf(request.key) == &of(request.key.kind).next;
     if (composed == Composed::NoSlot) {
-      of(request.key.kind).crowded = of(request.key.kind).crowded || isNext;
-      unplaced_ += isNext ? 0 : 1;
+      noteFull(request);
       continue;  // those after it may have a slot already
     }
-    missing_ -= isNext ? 0 : 1;
+    missing_ -= request.isMissing ? 1 : 0;
     spent += composer_->estimatedMilliseconds({parts_.data() + request.firstPart, request.partCount});
   }
   for (const CompositeKind kind : allCompositeKinds) {
@@ -452,6 +361,18 @@ void CompositeStore::compose(double milliseconds) {
     }
     state.wasDrawn = !state.drawn.empty();
     state.drawn.clear();
+  }
+}
+
+void CompositeStore::noteFull(const Request& request) {
+  KindState& state = of(request.key.kind);
+  // Second composites only use what room there is.
+  if (mixing_ && (request.key.side == CompositeKey::fadeSide || mixedLast_)) {
+    of(*mixing_).noRoomToFade = true;
+  } else if (&generationOf(request.key) == &state.next) {
+    state.crowded = true;
+  } else {
+    ++unplaced_;
   }
 }
 
@@ -471,7 +392,13 @@ CompositeStore::Composed CompositeStore::composeOne(const Request& request) {
     }
     return Composed::NoRawTiles;
   }
-  slotStamps_[*slot] = generationOf(request.key).stamp;
+  ++composedCount_;
+  Contents& contents = slotContents_[*slot];
+  contents.stamp = generationOf(request.key).stamp;
+  contents.layers.clear();
+  for (const CompositionPart& part : parts) {
+    contents.layers.push_back({part.layer->version(), part.opacity});
+  }
   return Composed::Done;
 }
 
@@ -489,9 +416,10 @@ std::optional<CompositeStore::Placement> CompositeStore::place(CompositeKind kin
       // What this frame draws must still be there when the next composes, or chunks without a composite would flicker.
       const CompositeKey key{kind, at, state.shown.side};
       const std::optional<std::uint32_t> slot = slots_.peek(key);
-      if (slot && slotStamps_[*slot] >= state.shown.since) {
+      if (slot && slotContents_[*slot].stamp >= state.shown.since) {
         slots_.use(key, frame_ + 1);
-        return Placement{*slot, textureTransform(transform)};
+        slotContents_[*slot].drawn = frame_;
+        return mixedPlacement(key, {*slot, textureTransform(transform)});
       }
     }
     const std::optional<TileIndex> parent = tiling_->parent(at);
@@ -505,8 +433,11 @@ std::optional<CompositeStore::Placement> CompositeStore::place(CompositeKind kin
 
 std::string CompositeStore::waitingFor() const {
   for (const CompositeKind kind : allCompositeKinds) {
-    const std::vector<Layer*>& enabled = layers_.group(layerGroup(kind)).enabledLayers();
     const KindState& state = of(kind);
+    if (state.version != settingsVersion(kind)) {
+      return "layers have changed";
+    }
+    const std::vector<Layer*>& enabled = state.layers;
     for (std::size_t i = 0; i < enabled.size(); ++i) {
       if (enabled[i]->awaitsData()) {
         return fmt::format("{} is being opened", enabled[i]->uri());

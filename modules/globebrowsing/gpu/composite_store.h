@@ -12,6 +12,7 @@
 
 #include "globebrowsing/gpu/composer.h"
 #include "globebrowsing/gpu/composite_kind.h"
+#include "globebrowsing/gpu/fade_watch.h"
 #include "globebrowsing/gpu/height_composition.h"
 #include "globebrowsing/gpu/opening_wait.h"
 #include "globebrowsing/gpu/slot_pool.h"
@@ -24,7 +25,8 @@ namespace meridian::globebrowsing {
 struct CompositeKey {
   CompositeKind kind = CompositeKind::Base;
   TileIndex index;
-  std::uint8_t side = 0;  ///< 0 or 1: composites of two times lie side by side
+  std::uint8_t side = 0;  ///< 0 or 1: composites of two times lie side by side; fadeSide: the other end of a fade
+  static constexpr std::uint8_t fadeSide = 2;
   bool operator==(const CompositeKey&) const = default;
 };
 
@@ -33,7 +35,7 @@ struct CompositeKey {
 template <>
 struct std::hash<meridian::globebrowsing::CompositeKey> {
   std::size_t operator()(const meridian::globebrowsing::CompositeKey& key) const noexcept {
-    return std::hash<meridian::globebrowsing::TileIndex>()(key.index) * 6 + 2 * static_cast<std::size_t>(key.kind) +
+    return std::hash<meridian::globebrowsing::TileIndex>()(key.index) * 9 + 3 * static_cast<std::size_t>(key.kind) +
            key.side;
   }
 };
@@ -47,6 +49,11 @@ namespace meridian::globebrowsing {
 /// When a layer moves on to another step in time, composites of the new step are made beside the old; as soon as they
 /// cover all that the last frame drew, they are exchanged at once. If the pool has no room for both, the new ones
 /// replace the old one by one.
+///
+/// While the opacity of one layer of one kind moves, a second composite lies beside each that is drawn, in which that
+/// layer has the opacity of the other end (as a rule 0 or 1): what is drawn is a mixture, and nothing is composed anew
+/// in each frame. When the opacity rests, the second takes the first one's place, or the first is composed anew. Where
+/// mixtures are not exact (mixesExactly), several layers fade, or the pool has no room, each change is composed.
 /// Render thread only; a steady frame allocates nothing.
 class CompositeStore {
  public:
@@ -77,12 +84,22 @@ class CompositeStore {
   /// What a chunk draws of a kind: its own composite or the nearest ancestor's; nothing where there is none.
   struct Placement {
     std::uint32_t slot = 0;
-    glm::vec4 transform{0.0F};  ///< texture coordinate = xy + zw * unit square of the chunk
+    glm::vec4 transform{0.0F};    ///< texture coordinate = xy + zw * unit square of the chunk
+    std::uint32_t otherSlot = 0;  ///< what to mix with, at the same texture coordinate
+    float otherWeight = 0.0F;     ///< and how much of it, 0 to 1
   };
   [[nodiscard]] std::optional<Placement> place(CompositeKind kind, const TileIndex& index, int colourLevel);
 
   /// Whether any enabled layer is of that kind; Base always is in use.
   [[nodiscard]] bool inUse(CompositeKind kind) const;
+  /// Whether the base's alpha is what water reflects, and not 0 everywhere.
+  [[nodiscard]] bool hasWater() const { return !layers_.group(LayerGroupId::WaterMasks).enabledLayers().empty(); }
+  /// The kind of which two composites should be mixed in this frame.
+  [[nodiscard]] std::optional<CompositeKind> fading() const { return fading_; }
+  /// Every frame, before anything is wanted: the kind of which two composites can be mixed by what draws.
+  void setMixing(std::optional<CompositeKind> kind) { mixing_ = kind; }
+  /// How many composites were composed, ever.
+  [[nodiscard]] std::uint64_t composedCount() const { return composedCount_; }
   [[nodiscard]] const Composer& composer() const { return *composer_; }
   /// Why what is asked for is not complete, or an empty string.
   [[nodiscard]] std::string waitingFor() const;
@@ -101,19 +118,35 @@ class CompositeStore {
   };
   /// The layers of a kind, each at one of its steps.
   struct Generation {
-    std::vector<LayerStepPointer> steps;  ///< by enabled layer; null where it has none yet
+    std::vector<LayerStepPointer> steps;  ///< by layer; null where it has none yet
     std::uint8_t side = 0;                ///< of its composites' keys
     std::uint64_t since = 0;              ///< composites with an earlier stamp show other steps
-    std::uint64_t stamp = 0;              ///< of the present settings
+    std::uint64_t stamp = 0;              ///< composites with an earlier stamp are to be composed anew
+  };
+  /// What a slot's composite was made from.
+  struct Contents {
+    std::uint64_t stamp = 0;
+    LayerOpacities layers;
+    std::uint64_t drawn = 0;  ///< the last frame that drew it
+  };
+  /// What to draw a composite mixed with.
+  struct Mixture {
+    std::uint32_t slot = 0;
+    float weight = 0.0F;
+    bool exact = false;  ///< it shows the present opacities, not those nearest to them
   };
   struct Drawn {
     TileIndex index;
     int colourLevel = 0;
   };
   struct KindState {
-    std::uint64_t version = 0;       ///< of the group's settings
+    std::uint64_t version = 0;       ///< of the groups' settings
+    std::vector<Layer*> layers;      ///< that are enabled
+    StructureKey key;                ///< of these
     std::uint32_t reliefStream = 0;  ///< that its composites were made from; 0: none of its layers colours heights
     OpeningWait opening;
+    FadeWatch fade;
+    bool noRoomToFade = false;  ///< the pool has none for second composites, as long as this fade goes on
     Generation shown;
     Generation next;
     bool hasNext = false;  ///< `next` is being composed
@@ -129,6 +162,7 @@ class CompositeStore {
     double priority = 0.0;
     std::size_t firstPart = 0;
     std::size_t partCount = 0;
+    bool isMissing = true;  ///< what is drawn without it is not what it should be
   };
 
   [[nodiscard]] KindState& of(CompositeKind kind) { return kinds_[static_cast<std::size_t>(kind)]; }
@@ -137,13 +171,17 @@ class CompositeStore {
 
   /// Whether facts are out of date.
   bool updateKind(CompositeKind kind);
-  void takeSteps(KindState& state, const std::vector<Layer*>& enabled);
-  void beginNext(KindState& state, const std::vector<Layer*>& enabled);
+  void takeLayers(CompositeKind kind);
+  void takeSteps(KindState& state);
+  void beginNext(KindState& state);
+  void updateFading();
+  [[nodiscard]] std::uint64_t settingsVersion(CompositeKind kind) const;
   void exchange(KindState& state);
   [[nodiscard]] bool nextCovers(CompositeKind kind) const;
   void wantNext(CompositeKind kind);
   void fetchAhead(CompositeKind kind);
 
+  [[nodiscard]] TileIndex ancestor(TileIndex index, int level) const;
   [[nodiscard]] const Facts& facts(const TileIndex& index) const;
   [[nodiscard]] bool anyFiner(CompositeKind kind, const Generation& generation, const TileIndex& index) const;
   /// Whether that layer shows more in composites that are finer than the tile's.
@@ -152,12 +190,25 @@ class CompositeStore {
   [[nodiscard]] CompositeKey nextKey(CompositeKind kind, const TileIndex& index, int colourLevel) const;
   [[nodiscard]] std::uint8_t nextOwnerLevel(CompositeKind kind, const TileIndex& index) const;
   State wantComposite(const CompositeKey& key, double priority);
+  /// Asks for what the composite is made from, unless that was done in this frame. `other`: an opacity to compose it
+  /// with instead of the layer's own.
+  void request(Request request, const LayerOpacity& other = {});
   [[nodiscard]] State stateOf(const CompositeKey& key) const;
-  bool gather(const CompositeKey& key, double priority);
+  bool gather(const CompositeKey& key, double priority, const LayerOpacity& other);
   /// What that layer adds to the composite; whether it is there (or never will be), else asks for it.
   bool gatherPart(CompositionPart& part, const LayerStepPointer& step, const CompositeKey& key, double priority);
+  /// What the composite of that key is drawn mixed with, if anything.
+  [[nodiscard]] std::optional<Mixture> mixture(const CompositeKey& key) const;
+  /// The opacity with which a second composite would bring the one of that key up to date, if any would.
+  [[nodiscard]] std::optional<LayerOpacity> otherEnd(const CompositeKey& key) const;
+  /// After a fade: has what is drawn mixed become one composite again.
+  void endMixing(const CompositeKey& key, const Mixture& mixture, double priority);
   enum class Composed { Done, NoSlot, NoRawTiles };
   Composed composeOne(const Request& request);
+  void noteFull(const Request& request);
+  void useOther(const CompositeKey& key, std::uint64_t frame);
+  /// Adds what the composite is mixed with.
+  [[nodiscard]] Placement mixedPlacement(const CompositeKey& key, Placement placement);
 
   std::shared_ptr<const Tiling> tiling_;
   LayerManager& layers_;
@@ -165,13 +216,18 @@ class CompositeStore {
   std::unique_ptr<Composer> composer_;
   HeightComposition relief_;
   SlotPool<CompositeKey> slots_;
-  std::vector<std::uint64_t> slotStamps_;  ///< of what each slot's composite was made from
+  std::vector<Contents> slotContents_;
   mutable std::array<KindState, compositeKindCount> kinds_;
   mutable std::unordered_map<TileIndex, Facts> facts_;
   std::vector<Request> requests_;
   std::vector<CompositionPart> parts_;
   std::vector<TileDataPointer> held_;  ///< the raw tiles of parts_
   std::uint64_t frame_ = 0;
+  std::optional<CompositeKind> fading_;
+  std::optional<CompositeKind> mixing_;
+  bool drewMixed_ = false;  ///< since the last beginFrame()
+  bool mixedLast_ = false;  ///< in the last frame
+  std::uint64_t composedCount_ = 0;
   std::size_t missing_ = 0;   ///< shown composites wanted in this frame that are not current
   bool lackedSome_ = false;   ///< in the last frame
   std::size_t unplaced_ = 0;  ///< of these, those that have their raw tiles but no room

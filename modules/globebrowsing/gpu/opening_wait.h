@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <chrono>
+#include <span>
 
-#include "globebrowsing/layers/layer_manager.h"
+#include "globebrowsing/layers/layer.h"
 
 namespace meridian::globebrowsing {
 
-/// Whether to wait for a group's layers that are being opened: what is made without them is made again as soon as they
+/// Whether to wait for layers that are being opened: what is made without them is made again as soon as they
 /// are open. Local data open within milliseconds; after half a second the rest goes on without them.
 class OpeningWait {
  public:
   /// Every frame.
-  void update(const LayerGroup& group) {
-    const auto& enabled = group.enabledLayers();
+  void update(std::span<Layer* const> enabled) {
     const bool opening =
         std::any_of(enabled.begin(), enabled.end(), [](const Layer* layer) { return layer->isOpening(); });
     const Clock::time_point now = Clock::now();

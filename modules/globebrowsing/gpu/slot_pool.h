@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace meridian::globebrowsing {
@@ -61,6 +62,15 @@ class SlotPool {
     slot = {key, frame, true};
     byKey_.emplace(key, oldest);
     return oldest;
+  }
+
+  /// Two keys that have slots take each other's.
+  void exchange(const Key& a, const Key& b) {
+    std::uint32_t& slotOfA = byKey_.at(a);
+    std::uint32_t& slotOfB = byKey_.at(b);
+    std::swap(slotOfA, slotOfB);
+    slots_[slotOfA].key = a;
+    slots_[slotOfB].key = b;
   }
 
   /// Lets every key go for which `gone(key)` holds.

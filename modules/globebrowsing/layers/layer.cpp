@@ -50,7 +50,7 @@ Sampling samplingOf(TileProvider& provider) {
 }  // namespace
 
 Layer::Layer(LayerDescription description, LayerGroupId group, const LayerServices& services,
-             std::function<void(const Layer&, Change)> changed)
+             std::function<void(Layer&, Change)> changed)
     : PropertyOwner(description.identifier, description.name, description.description),
       type({"Type", "Type", "Where the layer's data come from", true}, layerTypeNames(),
            static_cast<int>(description.type)),
@@ -134,8 +134,11 @@ void Layer::connectProperties() {
   for (Property* property : std::initializer_list<Property*>{&enabled, &blendMode, &adjustmentType}) {
     property->onChange(tell(Change::Structure));
   }
-  for (Property* property : std::initializer_list<Property*>{&opacity, &fade, &colour, &gamma, &multiplier, &offset,
-                                                             &chromaKeyColour, &chromaKeyTolerance}) {
+  for (Property* property : std::initializer_list<Property*>{&opacity, &fade}) {
+    property->onChange(tell(Change::Opacity));
+  }
+  for (Property* property :
+       std::initializer_list<Property*>{&colour, &gamma, &multiplier, &offset, &chromaKeyColour, &chromaKeyTolerance}) {
     property->onChange(tell(Change::Settings));
   }
   setDefault.onChange([this] {

@@ -35,10 +35,10 @@ struct LayerServices {
 class Layer final : public PropertyOwner {
  public:
   /// What a change of a property means to the rest.
-  enum class Change { Structure, Settings };
+  enum class Change { Structure, Settings, Opacity };
 
   Layer(LayerDescription description, LayerGroupId group, const LayerServices& services,
-        std::function<void(const Layer&, Change)> changed);
+        std::function<void(Layer&, Change)> changed);
   ~Layer() override;
 
   /// What its provider is made from.
@@ -51,6 +51,9 @@ class Layer final : public PropertyOwner {
   [[nodiscard]] bool isEnabled() const { return enabled.get(); }
   /// Opacity * Fade.
   [[nodiscard]] double effectiveOpacity() const { return opacity.get() * fade.get(); }
+  /// Names all that composites of the layer depend on but its opacity, and no other layer of its globe.
+  [[nodiscard]] std::uint64_t version() const { return version_; }
+  void setVersion(std::uint64_t version) { version_ = version; }
   [[nodiscard]] LayerSettings settings() const { return {gamma.get(), multiplier.get(), offset.get()}; }
   [[nodiscard]] BlendMode blend() const { return static_cast<BlendMode>(blendMode.get()); }
   [[nodiscard]] Adjustment adjustment() const { return static_cast<Adjustment>(adjustmentType.get()); }
@@ -61,10 +64,10 @@ class Layer final : public PropertyOwner {
   [[nodiscard]] glm::dvec3 ownColour() const { return relief() != nullptr ? relief()->colour : colour.get(); }
   [[nodiscard]] LayerStructure structure() const { return {group_, sampling_, blend(), adjustment()}; }
 
-  /// Whether its tiles are shown as they are: nothing mixes them with what is below or changes their colours.
+  /// Whether its tiles are shown as they are: at opacity 1 nothing mixes them with what is below or changes their colours.
   [[nodiscard]] bool showsTilesUnchanged() const {
     return sampling_ == Sampling::Tile && blend() == BlendMode::Normal && adjustment() == Adjustment::None &&
-           settings().isIdentity() && effectiveOpacity() == 1.0;
+           settings().isIdentity();
   }
 
   /// What the layer's table describes. Ask for tiles at step().
@@ -123,6 +126,7 @@ class Layer final : public PropertyOwner {
   void noteWaiting();
 
   LayerGroupId group_;
+  std::uint64_t version_ = 0;
   int zIndex_;
   bool hadZIndex_;
   Sampling sampling_;
@@ -131,7 +135,7 @@ class Layer final : public PropertyOwner {
   LayerServices services_;
   StepPlayer player_;
   LayerStepPointer step_;
-  std::function<void(const Layer&, Change)> changed_;
+  std::function<void(Layer&, Change)> changed_;
   TileProvider::State seenState_ = TileProvider::State::NotOpened;
   const Error* seenError_ = nullptr;
   std::string seenFailure_;  ///< of tiles that wait

@@ -68,8 +68,9 @@ Result<Layer*> LayerGroup::add(LayerDescription description, const LayerServices
                    placeOf(description.request, "Identifier"), "give the layer another Identifier");
   }
   auto added = std::make_unique<Layer>(std::move(description), id_, services,
-                                       [this](const Layer& layer, auto change) { changed(layer, change); });
+                                       [this](Layer& layer, auto change) { changed(layer, change); });
   Layer* layer = added.get();
+  layer->setVersion(nextLayerVersion());
   if (!layer->hadZIndex() && !layers_.empty()) {
     const Layer& last = *layers_.back();
     layer->setZIndex(last.hadZIndex() ? last.zIndex() + 1 : last.zIndex());
@@ -129,12 +130,25 @@ void LayerGroup::update(const Time& now) {
   }
 }
 
-void LayerGroup::changed(const Layer& layer, Layer::Change change) {
+void LayerGroup::changed(Layer& layer, Layer::Change change) {
+  const bool isFading = change == Layer::Change::Opacity && id_ != LayerGroupId::HeightLayers;
+  if (!isFading && !isToggled(layer)) {
+    layer.setVersion(nextLayerVersion());
+  }
   if (change == Layer::Change::Structure) {
     restructure();
-  } else if (layer.isEnabled()) {
+  } else if (layer.isEnabled() && !isFading) {
     ++settingsVersion_;
   }
+}
+
+/// Whether it was enabled or disabled just now: that alone changes nothing about the layer.
+bool LayerGroup::isToggled(const Layer& layer) const {
+  return layer.isEnabled() != (std::find(enabled_.begin(), enabled_.end(), &layer) != enabled_.end());
+}
+
+std::uint64_t LayerGroup::nextLayerVersion() {
+  return ++lastLayerVersion_ * layerGroupCount + static_cast<std::uint64_t>(id_);
 }
 
 void LayerGroup::restructure() {

@@ -34,7 +34,8 @@ class LayerGroup final : public PropertyOwner {
   /// Grows when the enabled layers, their order, or what the program depends on changes: look at structureKey().
   [[nodiscard]] std::uint64_t structureVersion() const { return structureVersion_; }
   /// Grows when the group's tiles must be composed anew: with the structure, and with any setting of an enabled layer,
-  /// an enabled layer's data becoming readable, or its Reset.
+  /// an enabled layer's data becoming readable, or its Reset. Opacities of colours count as nothing here, for they
+  /// may change in every frame: whoever composes colours looks at them in every frame.
   [[nodiscard]] std::uint64_t settingsVersion() const { return settingsVersion_; }
 
   /// Errors: an identifier that the group has. A layer without ZIndex takes the last layer's z if that had none given
@@ -55,7 +56,9 @@ class LayerGroup final : public PropertyOwner {
  private:
   [[nodiscard]] std::vector<std::unique_ptr<Layer>>::const_iterator place(std::string_view identifier) const;
   [[nodiscard]] Error noSuchLayer(std::string_view layer) const;
-  void changed(const Layer& layer, Layer::Change change);
+  void changed(Layer& layer, Layer::Change change);
+  [[nodiscard]] bool isToggled(const Layer& layer) const;
+  [[nodiscard]] std::uint64_t nextLayerVersion();
   void restructure();
 
   LayerGroupId id_;
@@ -64,6 +67,7 @@ class LayerGroup final : public PropertyOwner {
   StructureKey key_;
   std::uint64_t structureVersion_ = 1;
   std::uint64_t settingsVersion_ = 1;
+  std::uint64_t lastLayerVersion_ = 0;
 };
 
 /// All layers of a globe: the owner `Layers`. Render thread only.

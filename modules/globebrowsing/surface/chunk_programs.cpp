@@ -1,7 +1,9 @@
 #include "globebrowsing/surface/chunk_programs.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,8 +18,10 @@ namespace {
 
 std::string defines(const ChunkProgramKey& key) {
   return fmt::format(
-      "#define SHADING {}\n#define ACCURATE_NORMALS {}\n#define NIGHT {}\n#define OVERLAY {}\n#define EDGES {}\n",
-      int{key.shading}, int{key.accurateNormals}, int{key.night}, int{key.overlay}, int{key.edges});
+      "#define SHADING {}\n#define ACCURATE_NORMALS {}\n#define NIGHT {}\n#define OVERLAY {}\n#define WATER {}\n"
+      "#define EDGES {}\n#define FADE {}\n#define FADE_BASE 1\n#define FADE_NIGHT 2\n#define FADE_OVERLAY 3\n",
+      int{key.shading}, int{key.accurateNormals}, int{key.night}, int{key.overlay}, int{key.water}, int{key.edges},
+      key.fade ? static_cast<int>(*key.fade) + 1 : 0);
 }
 
 /// Draws a triangle as chunks are drawn, with each sampler, and textures, vertices and a target of its own.
@@ -77,16 +81,23 @@ void chunk_bindings::enableBlending() {
 }
 
 std::string ChunkProgramKey::text() const {
-  return fmt::format("chunks{}{}{}{}{}{}", shading ? " shading" : "", accurateNormals ? " normals" : "",
-                     night ? " night" : "", overlay ? " overlay" : "", edges ? " edges" : "",
-                     blended ? " blended" : "");
+  constexpr std::array<std::string_view, compositeKindCount> fades{" fading base", " fading night", " fading overlay"};
+  return fmt::format("chunks{}{}{}{}{}{}{}{}", shading ? " shading" : "", accurateNormals ? " normals" : "",
+                     night ? " night" : "", overlay ? " overlay" : "", water ? " water" : "", edges ? " edges" : "",
+                     fade ? fades[static_cast<std::size_t>(*fade)] : "", blended ? " blended" : "");
 }
 
-bool ChunkPrograms::isReady(const Pair& pair) const {
-  return graphics_.programs().ready(pair.full) != 0 && graphics_.programs().ready(pair.daylight) != 0;
+bool ChunkPrograms::isReady(const Set& set) const {
+  return std::all_of(set.programs.begin(), set.programs.end(), [this](const graphics::ProgramHandle& program) {
+    return graphics_.programs().ready(program) != 0;
+  });
 }
 
-Result<graphics::ProgramHandle> ChunkPrograms::request(const ChunkProgramKey& key) {
+Result<graphics::ProgramHandle> ChunkPrograms::request(ChunkProgramKey key, const ChunkProgramUse& use) {
+  key.night = key.night && use.night;
+  if (!use.fades || (key.fade == CompositeKind::Night && !key.night)) {
+    key.fade.reset();
+  }
   const graphics::Substitutions substitutions{{"defines", defines(key)}};
   Result<graphics::ShaderSource> vertex = graphics_.templates().load("surface/chunk.vert", substitutions);
   if (!vertex) {
@@ -100,16 +111,28 @@ Result<graphics::ProgramHandle> ChunkPrograms::request(const ChunkProgramKey& ke
   return graphics_.programs().request({key.text(), *std::move(vertex), *std::move(fragment), warm});
 }
 
-Result<void> ChunkPrograms::set(const ChunkProgramKey& key) {
-  if (!wanted_.full || !(key == wanted_.key)) {
-    ChunkProgramKey lit = key;
-    lit.night = false;
-    Result<graphics::ProgramHandle> full = request(key);
-    Result<graphics::ProgramHandle> daylight = key.night ? request(lit) : full;
-    if (!full || !daylight) {
-      return tl::make_unexpected(full ? daylight.error() : full.error());
+Result<ChunkPrograms::Set> ChunkPrograms::requestAll(const ChunkProgramKey& key) {
+  Set set{key, {}};
+  for (const bool fades : {false, true}) {
+    for (const bool night : {true, false}) {
+      const ChunkProgramUse use{night, fades};
+      Result<graphics::ProgramHandle> program = request(key, use);
+      if (!program) {
+        return tl::make_unexpected(program.error());
+      }
+      set.programs[place(use)] = *std::move(program);
     }
-    wanted_ = {key, *std::move(full), *std::move(daylight)};
+  }
+  return set;
+}
+
+Result<void> ChunkPrograms::set(const ChunkProgramKey& key) {
+  if (!wanted_.programs.front() || !(key == wanted_.key)) {
+    Result<Set> set = requestAll(key);
+    if (!set) {
+      return tl::make_unexpected(set.error());
+    }
+    wanted_ = *std::move(set);
   }
   if (ready()) {
     drawn_ = wanted_;
@@ -117,9 +140,24 @@ Result<void> ChunkPrograms::set(const ChunkProgramKey& key) {
   return {};
 }
 
+void ChunkPrograms::prepareFades() {
+  const ChunkProgramKey plain = unfaded(drawn_.key);
+  preparedKey_ = plain;
+  prepared_.clear();
+  for (const CompositeKind kind : allCompositeKinds) {
+    const bool isInUse = kind == CompositeKind::Base || (kind == CompositeKind::Night ? plain.night : plain.overlay);
+    ChunkProgramKey key = plain;
+    key.fade = kind;
+    if (isInUse) {
+      // The same templates made the programs that draw, so there is no error.
+      prepared_.push_back(requestAll(key).value_or(Set{}));
+    }
+  }
+}
+
 std::string ChunkPrograms::error() const {
-  for (const graphics::ProgramHandle* handle : {&wanted_.full, &wanted_.daylight}) {
-    if (const Result<GLuint> built = graphics_.programs().get(*handle); !built) {
+  for (const graphics::ProgramHandle& program : wanted_.programs) {
+    if (const Result<GLuint> built = graphics_.programs().get(program); !built) {
       return built.error().message();
     }
   }

@@ -108,6 +108,7 @@ std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
   view.lightDirection = glm::vec3(job.view->lightDirection);
   view.ambient = static_cast<float>(job.ambient);
   view.opacity = static_cast<float>(job.opacity);
+  view.waterReflectance = static_cast<float>(job.waterReflectance);
   if (!isFinite(view)) {
     return 0;
   }
@@ -121,7 +122,7 @@ std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
     const auto alike = [&](const Prepared& prepared) { return prepared.variant == first->variant; };
     const auto most = std::min(static_cast<std::ptrdiff_t>(ChunkBlock::most), prepared_.end() - first);
     const auto last = std::find_if_not(first, first + most, alike);
-    if (!bindForDrawing(tiles, first->variant.night, first->variant.sampling)) {
+    if (!bindForDrawing(tiles, first->variant.use, first->variant.sampling)) {
       return 0;
     }
     drawBatch({first, last}, job, tiles);
@@ -131,7 +132,7 @@ std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
   return prepared_.size();
 }
 
-void ChunkRenderer::prepare(const Job& job, const GlobeTiles& tiles) {
+void ChunkRenderer::prepare(const Job& job, GlobeTiles& tiles) {
   prepared_.clear();
   for (const SelectedChunk& chunk : job.chunks) {
     const ChunkSurface* surface = tiles.surfaces().find(chunk.index);
@@ -139,8 +140,12 @@ void ChunkRenderer::prepare(const Job& job, const GlobeTiles& tiles) {
     if ((chunk.views >> job.viewNumber & 1U) == 0 || surface == nullptr || !slot) {
       continue;
     }
-    const Variant variant{!isInDaylight(*surface, job.view->lightDirection), samplingOf(*surface, chunk, *job.view)};
-    prepared_.push_back({&chunk, surface, *slot, variant});
+    const bool night = !isInDaylight(*surface, job.view->lightDirection);
+    const Placements composites = place(chunk, night, tiles);
+    const bool fades = std::any_of(composites.begin(), composites.end(),
+                                   [](const auto& placement) { return placement && placement->otherWeight > 0.0F; });
+    const Variant variant{{night, fades}, samplingOf(*surface, chunk, *job.view)};
+    prepared_.push_back({&chunk, surface, *slot, variant, composites});
   }
   // What is translucent is drawn near to far whatever it takes: nothing may shine through the globe itself.
   if (!programs_.key().blended) {
@@ -150,8 +155,21 @@ void ChunkRenderer::prepare(const Job& job, const GlobeTiles& tiles) {
   }
 }
 
-bool ChunkRenderer::bindForDrawing(const GlobeTiles& tiles, bool night, Composer::Sampling sampling) const {
-  const GLuint program = night ? programs_.full() : programs_.daylight();
+ChunkRenderer::Placements ChunkRenderer::place(const SelectedChunk& chunk, bool night, GlobeTiles& tiles) const {
+  const std::array<bool, compositeKindCount> used{true, programs_.key().night && night, programs_.key().overlay};
+  Placements placements;
+  for (const CompositeKind kind : allCompositeKinds) {
+    const auto i = static_cast<std::size_t>(kind);
+    if (used[i]) {
+      placements[i] = tiles.composites().place(kind, chunk.index, chunk.colourLevel);
+    }
+  }
+  return placements;
+}
+
+bool ChunkRenderer::bindForDrawing(const GlobeTiles& tiles, const ChunkProgramUse& use,
+                                   Composer::Sampling sampling) const {
+  const GLuint program = programs_.program(use);
   if (program == 0) {
     return false;
   }
@@ -180,7 +198,7 @@ void ChunkRenderer::drawBatch(std::span<const Prepared> batch, const Job& job, G
   auto* parameters = reinterpret_cast<ChunkParameters*>(block.bytes);
   draws_.clear();
   for (const Prepared& prepared : batch) {
-    *parameters++ = parametersOf(prepared, job, tiles);
+    *parameters++ = parametersOf(prepared, job);
     tiles.surfaces().pool().add(draws_, prepared.slot, prepared.chunk->step, prepared.surface->columns(),
                                 job.skirts ? prepared.chunk->skirtEdges : 0U);
   }
@@ -188,23 +206,21 @@ void ChunkRenderer::drawBatch(std::span<const Prepared> batch, const Job& job, G
   SurfacePool::draw(draws_);
 }
 
-ChunkParameters ChunkRenderer::parametersOf(const Prepared& prepared, const Job& job, GlobeTiles& tiles) const {
+ChunkParameters ChunkRenderer::parametersOf(const Prepared& prepared, const Job& job) const {
   const SelectedChunk& chunk = *prepared.chunk;
   const ChunkSurface& surface = *prepared.surface;
   ChunkParameters parameters;
   for (std::size_t i = 0; i < parameters.corners.size(); ++i) {
     parameters.corners[i] = glm::vec4(glm::vec3(surface.corners()[i] - job.view->cameraPosition), 1.0F);
   }
-  const std::array<bool, compositeKindCount> used{true, programs_.key().night && prepared.variant.night,
-                                                  programs_.key().overlay};
-  for (const CompositeKind kind : allCompositeKinds) {
-    const auto i = static_cast<std::size_t>(kind);
-    if (!used[i]) {
-      continue;
-    }
-    if (const auto placement = tiles.composites().place(kind, chunk.index, chunk.colourLevel)) {
+  for (std::size_t i = 0; i < compositeKindCount; ++i) {
+    if (const auto& placement = prepared.composites[i]) {
       parameters.composites[i] = placement->transform;
       parameters.layers[static_cast<int>(i)] = static_cast<float>(placement->slot);
+      if (placement->otherWeight > 0.0F) {
+        parameters.otherLayer = static_cast<float>(placement->otherSlot);
+        parameters.otherWeight = placement->otherWeight;
+      }
     }
   }
   parameters.layers.w = static_cast<float>(prepared.slot);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,37 +43,41 @@ class ChunkRenderer {
     std::size_t viewNumber = 0;
     double ambient = 0.0;
     double opacity = 1.0;
+    double waterReflectance = 1.0;
     bool skirts = true;
   };
   void beginFrame() { uniforms_.beginFrame(); }
   void endFrame() { uniforms_.endFrame(); }
   /// Draws into the bound framebuffer. How many chunks were drawn.
   std::size_t draw(const Job& job, GlobeTiles& tiles);
-  /// A program (with or without night layers), textures and state of draw(), for drawing something else the same way;
+  /// A program, textures and state of draw(), for drawing something else the same way;
   /// whether there is a program.
-  bool bindForDrawing(const GlobeTiles& tiles, bool night, Composer::Sampling sampling) const;
+  bool bindForDrawing(const GlobeTiles& tiles, const ChunkProgramUse& use, Composer::Sampling sampling) const;
   /// Back to the default state.
   void unbind() const;
 
  private:
   /// What draws need different states for: a switch of program or sampler costs as much as several draws.
   struct Variant {
-    bool night = true;
+    ChunkProgramUse use;
     Composer::Sampling sampling = Composer::Sampling::Plain;
     auto operator<=>(const Variant&) const = default;
   };
-  static constexpr std::size_t variantCount = 6;
+  static constexpr std::size_t variantCount = 12;
+  using Placements = std::array<std::optional<CompositeStore::Placement>, compositeKindCount>;
   struct Prepared {
     const SelectedChunk* chunk = nullptr;
     const ChunkSurface* surface = nullptr;
     std::uint32_t slot = 0;
     Variant variant;
+    Placements composites;
   };
   /// Finds what is to be drawn, and in which order.
-  void prepare(const Job& job, const GlobeTiles& tiles);
+  void prepare(const Job& job, GlobeTiles& tiles);
+  [[nodiscard]] Placements place(const SelectedChunk& chunk, bool night, GlobeTiles& tiles) const;
   /// At most ChunkBlock::most chunks of one variant.
   void drawBatch(std::span<const Prepared> batch, const Job& job, GlobeTiles& tiles);
-  [[nodiscard]] ChunkParameters parametersOf(const Prepared& prepared, const Job& job, GlobeTiles& tiles) const;
+  [[nodiscard]] ChunkParameters parametersOf(const Prepared& prepared, const Job& job) const;
 
   ChunkPrograms programs_;
   std::vector<Prepared> prepared_;  ///< while draw() draws; near ones first

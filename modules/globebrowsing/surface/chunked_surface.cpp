@@ -42,15 +42,21 @@ void ChunkedSurface::update(const FrameContext& frame, const SurfaceSettings& se
                             settings.shading && settings.accurateNormals,
                             settings.shading && tiles_->composites().inUse(CompositeKind::Night),
                             tiles_->composites().inUse(CompositeKind::Overlay),
+                            settings.shading && tiles_->composites().hasWater(),
                             settings.showEdges,
-                            settings.opacity < 1.0};
+                            settings.opacity < 1.0,
+                            tiles_->composites().fading()};
   if (const Result<void> program = renderer_.programs().set(key); !program) {
     if (programTrouble_ != program.error().message()) {
       programTrouble_ = program.error().message();
       log::error("{}", programTrouble_);
     }
   }
+  tiles_->composites().setMixing(renderer_.programs().key().fade);
   select(frame, settings);
+  if (renderer_.programs().ready() && !renderer_.programs().hasPreparedFades() && tiles_->waitingFor().empty()) {
+    renderer_.programs().prepareFades();
+  }
   tiles_->process(parts_.graphics->uploads(), settings.compositionMilliseconds);
   tellWhenFull();
 }
@@ -82,7 +88,9 @@ void ChunkedSurface::select(const FrameContext& frame, const SurfaceSettings& se
 }
 
 void ChunkedSurface::draw(const FrameContext& frame, std::size_t view) {
-  renderer_.draw({tree_.selected(), &frame.views[view], view, settings_.ambient, settings_.opacity, true}, *tiles_);
+  renderer_.draw({tree_.selected(), &frame.views[view], view, settings_.ambient, settings_.opacity,
+                  settings_.waterReflectance, true},
+                 *tiles_);
 }
 
 Settled ChunkedSurface::settled(std::size_t /*view*/) const {

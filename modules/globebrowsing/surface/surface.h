@@ -15,10 +15,11 @@ namespace meridian::globebrowsing {
 struct SurfaceSettings {
   SelectionSettings selection;
   bool shading = true;
-  bool accurateNormals = false;  ///< of the relief, not of the ellipsoid
-  bool showEdges = false;        ///< of chunks, for debugging
-  double ambient = 0.05;         ///< 0..1
-  double opacity = 1.0;          ///< 0..1
+  bool accurateNormals = false;   ///< of the relief, not of the ellipsoid
+  bool showEdges = false;         ///< of chunks, for debugging
+  double ambient = 0.05;          ///< 0..1
+  double opacity = 1.0;           ///< 0..1
+  double waterReflectance = 1.0;  ///< 1: as of a sea in a breeze
   double compositionMilliseconds = 2.0;
 };
 

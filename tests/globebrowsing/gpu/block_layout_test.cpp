@@ -70,6 +70,9 @@ TEST_F(BlockLayoutTest, ChunkBlocksLieWhereTheDriverReadsThem) {
   EXPECT_EQ(offset("chunks[0].skirt"), offsetof(ChunkParameters, skirt));
   EXPECT_EQ(offset("chunks[0].level"), offsetof(ChunkParameters, level));
   EXPECT_EQ(offset("chunks[0].lift"), offsetof(ChunkParameters, lift));
+  EXPECT_EQ(offset("chunks[0].otherLayer"), offsetof(ChunkParameters, otherLayer));
+  EXPECT_EQ(offset("chunks[0].otherWeight"), offsetof(ChunkParameters, otherWeight));
+  EXPECT_EQ(offset("ViewBlock.waterReflectance"), offsetof(ViewBlock, waterReflectance));
   EXPECT_EQ(offset("chunks[63].level"), 63 * sizeof(ChunkParameters) + offsetof(ChunkParameters, level));
   EXPECT_LE(blockSize("ChunkBlock"), static_cast<int>(sizeof(ChunkBlock)));
 }

@@ -51,6 +51,18 @@ TEST(SlotPool, PeekDoesNotMark) {
   EXPECT_TRUE(pool.take(1, 2, ignore));
 }
 
+TEST(SlotPool, TwoKeysExchangeTheirSlots) {
+  SlotPool<int> pool(2);
+  const std::uint32_t first = pool.take(0, 1, ignore).value();
+  const std::uint32_t second = pool.take(1, 2, ignore).value();
+  pool.exchange(0, 1);
+  EXPECT_EQ(pool.peek(0), second);
+  EXPECT_EQ(pool.peek(1), first);
+  int evicted = -1;
+  EXPECT_EQ(pool.take(7, 3, [&](int key) { evicted = key; }), first) << "the slot longest unused is still that";
+  EXPECT_EQ(evicted, 1);
+}
+
 TEST(SlotPool, ReleasesByPredicate) {
   SlotPool<int> pool(4);
   for (int key = 0; key < 4; ++key) {

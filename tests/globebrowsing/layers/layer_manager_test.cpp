@@ -101,9 +101,9 @@ TEST_F(LayerManagerTest, StructureGrowsWithWhatTheProgramDependsOnAndNothingElse
   const std::pair nothing(false, false);
   const std::pair recompose(false, true);
   const std::pair both(true, true);
-  EXPECT_EQ(grows([&] { a.opacity.put(0.5); }), recompose);
-  EXPECT_EQ(grows([&] { a.opacity.put(0.5); }), nothing) << "no change";
-  EXPECT_EQ(grows([&] { a.fade.put(0.5); }), recompose);
+  EXPECT_EQ(grows([&] { a.opacity.put(0.5); }), nothing) << "looked at in every frame";
+  EXPECT_EQ(grows([&] { a.gamma.put(1.0); }), nothing) << "no change";
+  EXPECT_EQ(grows([&] { a.fade.put(0.5); }), nothing);
   EXPECT_EQ(grows([&] { a.gamma.put(2.0); }), recompose);
   EXPECT_EQ(grows([&] { a.chromaKeyTolerance.put(0.2); }), recompose);
   EXPECT_EQ(grows([&] { a.colour.put(glm::dvec3(0.5)); }), recompose);

@@ -22,6 +22,7 @@ TEST_F(LayerChangesTest, TogglingRequestsAProgramAndDrawsTheOldCompositesUntilTh
                                                              solidLayer("Red", {1, 0, 0}, {{"Enabled", false}})})}});
   ASSERT_TRUE(settle());
   EXPECT_THAT(centre(), colour(0, 200, 0));
+  graphics_->programs().waitAll();  // those that fades will draw with
   const auto built = statistics_.programs.built.load();
 
   Layer* red = globe.layers().group(LayerGroupId::ColorLayers).find("Red");
@@ -49,6 +50,7 @@ TEST_F(LayerChangesTest, SettingsRecomposeAndNeverRecompile) {
       {{"ColorLayers",
         listOf({solidLayer("Black", {0, 0, 0}), fileLayer("Grey", uniformRaster("g.tif", {100, 100, 100}))})}});
   ASSERT_TRUE(settle());
+  graphics_->programs().waitAll();  // those that fades will draw with
   const auto built = statistics_.programs.built.load();
   Layer* layer = globe.layers().group(LayerGroupId::ColorLayers).find("Grey");
   layer->opacity.put(0.5);

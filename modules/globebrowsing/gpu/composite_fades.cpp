@@ -1,0 +1,99 @@
+// The part of CompositeStore that mixes two composites while a layer fades.
+
+#include <algorithm>
+
+#include "globebrowsing/gpu/composite_store.h"
+
+namespace meridian::globebrowsing {
+
+namespace {
+
+/// Of composites that only put an end to mixing: after all that can be seen.
+constexpr double endOfMixing = 6.0;
+
+}  // namespace
+
+void CompositeStore::updateFading() {
+  const bool goesOn = fading_ && (of(*fading_).fade.moves() || drewMixed_);
+  mixedLast_ = drewMixed_;
+  drewMixed_ = false;
+  if (!goesOn) {
+    const auto found = std::find_if(allCompositeKinds.begin(), allCompositeKinds.end(),
+                                    [this](CompositeKind kind) { return of(kind).fade.mixes(); });
+    fading_ = found == allCompositeKinds.end() ? std::nullopt : std::optional(*found);
+  }
+  for (KindState& state : kinds_) {
+    state.noRoomToFade = state.noRoomToFade && state.fade.moves();
+  }
+}
+
+std::optional<CompositeStore::Mixture> CompositeStore::mixture(const CompositeKey& key) const {
+  if (mixing_ != key.kind) {
+    return std::nullopt;
+  }
+  const std::optional<std::uint32_t> slot = slots_.peek(key);
+  const std::optional<std::uint32_t> other = slots_.peek({key.kind, key.index, CompositeKey::fadeSide});
+  if (!slot || !other || slotContents_[*slot].stamp != slotContents_[*other].stamp) {
+    return std::nullopt;
+  }
+  const LayerOpacities& now = of(key.kind).fade.opacities();
+  const LayerOpacities& made = slotContents_[*slot].layers;
+  const OpacityDifference between = difference(made, slotContents_[*other].layers);
+  if (between.kind != OpacityDifference::Kind::OneOpacity) {
+    return std::nullopt;
+  }
+  const float weight = mixingWeight(between.first, between.second, opacityOf(now, between.version));
+  const OpacityDifference lack = difference(made, now);
+  const bool isLack = lack.kind == OpacityDifference::Kind::None ||
+                      (lack.kind == OpacityDifference::Kind::OneOpacity && lack.version == between.version);
+  return Mixture{*other, std::clamp(weight, 0.0F, 1.0F), isLack && weight >= 0.0F && weight <= 1.0F};
+}
+
+std::optional<LayerOpacity> CompositeStore::otherEnd(const CompositeKey& key) const {
+  const KindState& state = of(key.kind);
+  const std::optional<std::uint32_t> slot = slots_.peek(key);
+  if (mixing_ != key.kind || !state.fade.moves() || state.noRoomToFade || state.hasNext || !slot ||
+      slotContents_[*slot].stamp != state.shown.stamp) {
+    return std::nullopt;
+  }
+  const OpacityDifference lack = difference(slotContents_[*slot].layers, state.fade.opacities());
+  if (lack.kind != OpacityDifference::Kind::OneOpacity || !state.fade.mixes(lack.version)) {
+    return std::nullopt;
+  }
+  return LayerOpacity{lack.version, state.fade.end(lack.version, lack.first)};
+}
+
+void CompositeStore::endMixing(const CompositeKey& key, const Mixture& mixture, double priority) {
+  if (mixture.weight >= 1.0F) {
+    slots_.exchange(key, {key.kind, key.index, CompositeKey::fadeSide});
+  } else if (mixture.weight > 0.0F && !of(key.kind).fade.moves()) {
+    Request plain{key, priority - endOfMixing};
+    plain.isMissing = false;
+    request(plain);
+  }
+}
+
+CompositeStore::Placement CompositeStore::mixedPlacement(const CompositeKey& key, Placement placement) {
+  const std::optional<Mixture> mixed = mixture(key);
+  if (!mixed || mixed->weight <= 0.0F) {
+    return placement;
+  }
+  drewMixed_ = true;
+  useOther(key, frame_ + 1);
+  if (mixed->weight >= 1.0F) {
+    placement.slot = mixed->slot;
+  } else {
+    placement.otherSlot = mixed->slot;
+    placement.otherWeight = mixed->weight;
+  }
+  return placement;
+}
+
+/// Second composites are kept only as long as there is room for all first ones.
+void CompositeStore::useOther(const CompositeKey& key, std::uint64_t frame) {
+  if (!of(key.kind).noRoomToFade) {
+    slots_.use({key.kind, key.index, CompositeKey::fadeSide}, frame);
+  }
+}
+
+}  // namespace meridian::globebrowsing
