@@ -21,7 +21,8 @@ double millisecondsSince(Clock::time_point start) {
 
 }  // namespace
 
-Result<std::unique_ptr<SettledGlobe>> SettledGlobe::create(const std::string& place, glm::ivec2 size) {
+Result<std::unique_ptr<SettledGlobe>> SettledGlobe::create(const std::string& place, glm::ivec2 size,
+                                                           const std::filesystem::path& asset, const char* time) {
   std::unique_ptr<SettledGlobe> globe(new SettledGlobe);
   globe->size_ = size;
   Result<Paths> found = app::findPaths(std::filesystem::temp_directory_path());
@@ -45,10 +46,11 @@ Result<std::unique_ptr<SettledGlobe>> SettledGlobe::create(const std::string& pl
   std::vector<std::unique_ptr<Module>> modules;
   modules.push_back(globebrowsing::makeModule());
   application.addModules(std::move(modules));
-  if (Result<void> loaded = application.load((paths.data / "assets/default.asset").string()); !loaded) {
+  if (Result<void> loaded = application.load((asset.empty() ? paths.data / "assets/default.asset" : asset).string());
+      !loaded) {
     return tl::make_unexpected(loaded.error());
   }
-  application.clock().setTime(*Time::fromUtc("2026-06-21T10:00:00"));
+  application.clock().setTime(*Time::fromUtc(time));
   application.scene().evaluate(application.clock().time());
   const auto pose = navigation::geodeticPoseFromText(place);
   if (!pose) {
@@ -107,6 +109,14 @@ double SettledGlobe::frame() {
 
 void SettledGlobe::blit() {
   renderer_->target().blit(showing_.id(), size_);
+}
+
+std::vector<std::uint8_t> SettledGlobe::picture() const {
+  std::vector<std::uint8_t> rgba(std::size_t{4} * static_cast<std::size_t>(size_.x) *
+                                 static_cast<std::size_t>(size_.y));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, showing_.id());
+  glReadPixels(0, 0, size_.x, size_.y, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  return rgba;
 }
 
 globebrowsing::ChunkedSurface& SettledGlobe::surface() {

@@ -1,5 +1,7 @@
 #include "globebrowsing/providers/service_series.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <set>
@@ -209,10 +211,15 @@ class Allowed {
     }
     int count = 0;
     char unit = 0;
-    char clockUnit = 0;
     const std::string period = interval.size() > 2 ? interval[2] : "P1D";
-    if (std::sscanf(period.c_str(), "PT%d%c", &count, &clockUnit) == 2) {
-      return since % (count * (clockUnit == 'H' ? 3600 : clockUnit == 'M' ? 60 : 1)) == 0;
+    if (period.starts_with("PT")) {
+      std::time_t seconds = 0;
+      int used = 0;
+      for (const char* rest = period.c_str() + 2; std::sscanf(rest, "%d%c%n", &count, &unit, &used) == 2;
+           rest += used) {
+        seconds += count * (unit == 'H' ? 3600 : unit == 'M' ? 60 : 1);
+      }
+      return since % seconds == 0;
     }
     if (std::sscanf(period.c_str(), "P%d%c", &count, &unit) != 2 || count == 0) {
       return true;
