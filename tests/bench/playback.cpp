@@ -2,6 +2,7 @@
 //   bench-playback [--seconds S] [--rate STEPS_A_SECOND] [--size WxH]
 // Prints one JSON object: what of it is on the screen, by the pictures, and what memory it takes.
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -81,10 +82,13 @@ Result<void> play(const Options& options) {
     (now < options.seconds / 4 ? early : most) = std::max(now < options.seconds / 4 ? early : most, memory);
     std::this_thread::sleep_until(start + std::chrono::duration<double>(frames / framesPerSecond));
   }
+  const std::string log = server.accessLog();
   fmt::print(
       "{{\"asked_per_second\": {}, \"shown_per_second\": {}, \"frames\": {}, \"blank_frames\": {}, "
-      "\"mixed_frames\": {}, \"memory_growth_mib\": {:.1f}, \"memory_mib\": {:.1f}}}\n",
-      options.rate, shown / elapsed(), frames, blank, mixed, most - early, most);
+      "\"mixed_frames\": {}, \"memory_growth_mib\": {:.1f}, \"memory_mib\": {:.1f}, \"tiles_loaded\": {}, "
+      "\"requests\": {}}}\n",
+      options.rate, shown / elapsed(), frames, blank, mixed, most - early, most,
+      (*globe)->application().statistics().tiles.loaded.load(), std::count(log.begin(), log.end(), '\n'));
   return {};
 }
 

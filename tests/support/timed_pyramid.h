@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -34,7 +36,10 @@ struct TimedPyramid {
   static std::array<int, 3> colourOf(int day) {
     return {40 + 20 * (day % colours % 10), 40 + 35 * (day % colours / 10), blue};
   }
-  static Time timeOf(double day) { return *Time::fromUtc("2004-01-01") + day * 86400.0; }
+  static Time timeOf(double day) {
+    return Time::fromUtcInstant(Time::fromUtc("2004-01-01")->utcInstant() +
+                                std::chrono::milliseconds(std::llround(day * 86'400'000.0)));
+  }
   static std::string nameOf(int day) { return timeOf(day).utc().substr(0, 10); }
 
   /// The layer of such a service at an address, as an asset names it.
