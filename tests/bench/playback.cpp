@@ -30,7 +30,7 @@ struct Options {
   glm::ivec2 size{640, 360};
 };
 
-constexpr double framesPerSecond = 30.0;
+constexpr double framesPerSecond = 60.0;
 /// Of the globe, in pixels of the picture's height, from this place.
 constexpr const char* place = "20,10,9000000";
 constexpr double surelyGlobe = 0.3;
