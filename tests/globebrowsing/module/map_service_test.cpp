@@ -61,20 +61,14 @@ TEST_F(MapServiceTest, TheViewWaitsForAServerThatIsDown) {
   auto& globe =
       addGlobe({{"ColorLayers",
                  listOf({fileLayer("World", WorldRaster::document("http://127.0.0.1:" + std::to_string(port)))})}});
-  for (int i = 0; i < 200; ++i) {
-    frame();
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  EXPECT_NE(unsettled(), "");
   const StringProperty& lastError = globe.layers().group(LayerGroupId::ColorLayers).find("World")->lastError;
+  ASSERT_TRUE(framesUntil([&lastError] { return !lastError.get().empty(); }));
+  EXPECT_NE(unsettled(), "");
   EXPECT_THAT(lastError.get(), HasSubstr(std::to_string(port)));
   EXPECT_EQ(globe.layers().group(LayerGroupId::ColorLayers).find("World")->status.get(), "ready");
   const ServerProcess server(ServerProcess::fileServer((folder_ / "tiles").string(), port), port);
   EXPECT_TRUE(settle());
-  for (int i = 0; i < 40; ++i) {
-    frame();
-  }
-  EXPECT_EQ(lastError.get(), "");
+  EXPECT_TRUE(framesUntil([&lastError] { return lastError.get().empty(); })) << lastError.get();
   const Pixel seen = centre();
   for (int band = 0; band < 3; ++band) {
     EXPECT_NEAR(seen[static_cast<std::size_t>(band)], WorldRaster::value(band, 0.2, 0.1), 4) << band;
