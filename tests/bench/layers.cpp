@@ -112,7 +112,7 @@ class LayerBenchmark {
       if (auto done = enable(enabledCount); !done) {
         return done;
       }
-      const std::vector<std::uint8_t> before = picture();
+      const std::vector<std::uint8_t> before = globe_.picture();
       layers_[layerCount - 1]->enabled.put(true);
       const auto start = Clock::now();
       int frames = 0;
@@ -120,7 +120,7 @@ class LayerBenchmark {
       do {
         globe_.frame();
         ++frames;
-        if (!seen && picture() != before) {
+        if (!seen && globe_.picture() != before) {
           seen = true;
           toggleFrames_ = std::max(toggleFrames_, frames);
         }
@@ -184,11 +184,6 @@ class LayerBenchmark {
         times->push_back(milliseconds);
       }
     }
-  }
-  [[nodiscard]] std::vector<std::uint8_t> picture() const {
-    std::vector<std::uint8_t> rgba(std::size_t{4} * static_cast<std::size_t>(size_.x * size_.y));
-    globe_.readShown(rgba);
-    return rgba;
   }
   static void writeAsset(const std::filesystem::path& file) {
     std::ofstream text(file);

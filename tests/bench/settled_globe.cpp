@@ -21,7 +21,8 @@ double millisecondsSince(Clock::time_point start) {
 
 }  // namespace
 
-Result<std::unique_ptr<SettledGlobe>> SettledGlobe::create(const std::string& place, glm::ivec2 size) {
+Result<std::unique_ptr<SettledGlobe>> SettledGlobe::create(const std::string& place, glm::ivec2 size,
+                                                           const std::filesystem::path& asset, const char* time) {
   std::unique_ptr<SettledGlobe> globe(new SettledGlobe);
   globe->size_ = size;
   Result<Paths> found = app::findPaths(std::filesystem::temp_directory_path());
@@ -45,16 +46,18 @@ Result<std::unique_ptr<SettledGlobe>> SettledGlobe::create(const std::string& pl
   std::vector<std::unique_ptr<Module>> modules;
   modules.push_back(globebrowsing::makeModule());
   application.addModules(std::move(modules));
-  if (Result<void> loaded = application.load((paths.data / "assets/default.asset").string()); !loaded) {
+  if (Result<void> loaded = application.load((asset.empty() ? paths.data / "assets/default.asset" : asset).string());
+      !loaded) {
     return tl::make_unexpected(loaded.error());
   }
   // One colour and one height layer are what the goals are for.
   constexpr auto onlyThose =
       "openspace.setPropertyValueSingle('Scene.Earth.Renderable.Layers.NightLayers.CityLights.Enabled', false)";
-  if (Result<void> set = application.scripts().run(onlyThose, "settled_globe.cpp"); !set) {
+  if (Result<void> set = asset.empty() ? application.scripts().run(onlyThose, "settled_globe.cpp") : Result<void>();
+      !set) {
     return tl::make_unexpected(set.error());
   }
-  application.clock().setTime(*Time::fromUtc("2026-06-21T10:00:00"));
+  application.clock().setTime(*Time::fromUtc(time));
   application.scene().evaluate(application.clock().time());
   const auto pose = navigation::geodeticPoseFromText(place);
   if (!pose) {
@@ -116,8 +119,11 @@ void SettledGlobe::blit() {
   renderer_->target().blit(showing_.id(), size_);
 }
 
-void SettledGlobe::readShown(std::vector<std::uint8_t>& pixels) const {
-  glGetTextureImage(shown_.id(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(pixels.size()), pixels.data());
+std::vector<std::uint8_t> SettledGlobe::picture() const {
+  std::vector<std::uint8_t> rgba(std::size_t{4} * static_cast<std::size_t>(size_.x) *
+                                 static_cast<std::size_t>(size_.y));
+  glGetTextureImage(shown_.id(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(rgba.size()), rgba.data());
+  return rgba;
 }
 
 globebrowsing::ChunkedSurface& SettledGlobe::surface() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,7 +18,10 @@ namespace meridian::bench {
 class SettledGlobe {
  public:
   /// `place`: LAT,LON,ALT[,HEADING,PITCH] as for --camera, over the globe `Earth` of the default scene.
-  static Result<std::unique_ptr<SettledGlobe>> create(const std::string& place, glm::ivec2 size);
+  /// `asset`: another scene with a globe of that name.
+  static Result<std::unique_ptr<SettledGlobe>> create(const std::string& place, glm::ivec2 size,
+                                                      const std::filesystem::path& asset = {},
+                                                      const char* time = "2026-06-21T10:00:00");
   ~SettledGlobe();
   SettledGlobe(const SettledGlobe&) = delete;
   SettledGlobe& operator=(const SettledGlobe&) = delete;
@@ -28,8 +32,8 @@ class SettledGlobe {
   double frame();
   /// Copies the drawn frame, as a window would show it.
   void blit();
-  /// The frame shown last, RGBA.
-  void readShown(std::vector<std::uint8_t>& pixels) const;
+  /// The last frame's pixels, rows of RGBA from the bottom.
+  [[nodiscard]] std::vector<std::uint8_t> picture() const;
 
   [[nodiscard]] globebrowsing::ChunkedSurface& surface();
   [[nodiscard]] app::Application& application() { return *application_; }

@@ -56,15 +56,24 @@ struct ServiceStage {
     EXPECT_TRUE(provider) << provider.error().message();
     return provider ? *provider : nullptr;
   }
-  /// Opened as a layer does it.
+  /// Opened as a layer does it; of a layer with steps that of the year 2000.
   [[nodiscard]] std::shared_ptr<TileProvider> open(Fields fields, const std::string& folder = "/") {
-    const auto provider = make(std::move(fields), folder);
+    const auto provider = opened(make(std::move(fields), folder));
+    return provider->steps() == nullptr ? provider : open(*provider, Time());
+  }
+  [[nodiscard]] std::shared_ptr<TileProvider> opened(const std::shared_ptr<TileProvider>& provider) {
     TileProvider::openOn(workers, provider);
     while (provider->state() == TileProvider::State::Opening) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     EXPECT_EQ(provider->state(), TileProvider::State::Ready) << (provider->error() ? provider->error()->message() : "");
     return provider;
+  }
+  /// What a layer with steps shows then.
+  [[nodiscard]] std::shared_ptr<TileProvider> open(const TileProvider& layer, const Time& time) {
+    const auto step = layer.steps()->make(time);
+    EXPECT_TRUE(step) << step.error().message();
+    return step ? opened(*step) : nullptr;
   }
   [[nodiscard]] std::shared_ptr<TileProvider> open(const std::string& filePath) {
     return open(Fields{{"FilePath", filePath}});

@@ -110,6 +110,18 @@ const Schema& DefaultTileProvider::schema() {
 }
 
 Result<std::shared_ptr<TileProvider>> DefaultTileProvider::make(const ProviderRequest& request) {
+  return makeUnopened(request);
+}
+
+Result<std::shared_ptr<TileProvider>> DefaultTileProvider::make(const ProviderRequest& request,
+                                                                std::unique_ptr<ServiceOpening> opening) {
+  return makeUnopened(request).map([&](std::shared_ptr<DefaultTileProvider> provider) {
+    provider->opening_ = std::move(opening);
+    return std::shared_ptr<TileProvider>(std::move(provider));
+  });
+}
+
+Result<std::shared_ptr<DefaultTileProvider>> DefaultTileProvider::makeUnopened(const ProviderRequest& request) {
   const std::string& filePath = *request.table.find("FilePath")->string();
   if (filePath.empty()) {
     return failure("FilePath is empty", placeOf(request, "FilePath"), "name a raster");
@@ -133,10 +145,10 @@ DefaultTileProvider::DefaultTileProvider(DataPath path, RasterDescription descri
     : path_(std::move(path)),
       description_(std::move(description)),
       sourceTiles_(request.sourceTiles),
-      notesTold_(request.notesTold) {
+      share_(request.share) {
   // A service has its own georeference; one that the asset replaces is a raster's.
   if (sourceTiles_ != nullptr && !description_.extentDegrees) {
-    opening_ = std::make_unique<ServiceOpening>(path_.text, description_.where, sourceTiles_->fetcher());
+    opening_ = std::make_unique<ServiceOpening>(path_.text, description_.where, sourceTiles_->fetcher(), share_);
   }
 }
 
@@ -173,7 +185,7 @@ Result<std::shared_ptr<PixelSource>> DefaultTileProvider::openSource() {
 
 void DefaultTileProvider::tellNotes() const {
   const std::vector<std::string> notes = opening_->notes();
-  if (notes.empty() || (notesTold_ != nullptr && notesTold_->exchange(true))) {
+  if (notes.empty() || (share_ != nullptr && !share_->isFirstToTell())) {
     return;
   }
   for (const std::string& note : notes) {

@@ -30,6 +30,9 @@ class DefaultTileProvider final : public TileProvider {
   /// FilePath, and ours: ExtentDegrees, HeightScale, HeightOffset, HeightDatum.
   [[nodiscard]] static const Schema& schema();
   [[nodiscard]] static Result<std::shared_ptr<TileProvider>> make(const ProviderRequest& request);
+  /// Of a map service, whatever FilePath says; the request has source tiles.
+  [[nodiscard]] static Result<std::shared_ptr<TileProvider>> make(const ProviderRequest& request,
+                                                                  std::unique_ptr<ServiceOpening> opening);
 
   /// Without source tiles, map services are left to GDAL.
   DefaultTileProvider(DataPath path, RasterDescription description, const ProviderRequest& request);
@@ -46,6 +49,7 @@ class DefaultTileProvider final : public TileProvider {
   /// A map service's source where the data are one, else a raster's.
   [[nodiscard]] Result<std::shared_ptr<PixelSource>> openSource();
   void tellNotes() const;
+  [[nodiscard]] static Result<std::shared_ptr<DefaultTileProvider>> makeUnopened(const ProviderRequest& request);
   [[nodiscard]] Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
                                                  std::stop_token stop) const override;
   [[nodiscard]] Result<HeightPixels> makeHeights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
@@ -59,7 +63,7 @@ class DefaultTileProvider final : public TileProvider {
   DataPath path_;
   RasterDescription description_;
   std::shared_ptr<SourceTileStore> sourceTiles_;
-  std::shared_ptr<std::atomic<bool>> notesTold_;
+  std::shared_ptr<SeriesShare> share_;
   std::unique_ptr<ServiceOpening> opening_;  ///< until it is open; null where the data are no map service's
   std::shared_ptr<PixelSource> source_;
 };

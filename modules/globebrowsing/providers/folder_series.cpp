@@ -22,7 +22,7 @@ const Schema& folderSchema() {
 
 }  // namespace
 
-Result<std::unique_ptr<TimeSeries>> FolderSeries::make(const ProviderRequest& request) {
+Result<std::unique_ptr<RasterSeries>> FolderSeries::make(const ProviderRequest& request) {
   const ProviderRequest own = innerRequest(request, "Folder", valueAt(request.table, "Folder"));
   if (Result<void> valid = folderSchema().validate(own.table, own.where, own.path); !valid) {
     return tl::make_unexpected(std::move(valid.error()));
@@ -32,8 +32,8 @@ Result<std::unique_ptr<TimeSeries>> FolderSeries::make(const ProviderRequest& re
     reader.error().where = placeOf(own, "Format");
     return tl::make_unexpected(std::move(reader.error()));
   }
-  return std::unique_ptr<TimeSeries>(new FolderSeries(folderPath(*valueAt(own.table, "Folder").string(), own.folder),
-                                                      std::move(*reader), placeOf(own, "Folder")));
+  return std::unique_ptr<RasterSeries>(new FolderSeries(folderPath(*valueAt(own.table, "Folder").string(), own.folder),
+                                                        std::move(*reader), placeOf(own, "Folder")));
 }
 
 Result<void> FolderSeries::check() const {

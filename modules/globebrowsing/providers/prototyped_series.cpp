@@ -71,7 +71,7 @@ Result<TimeQuantizer> quantizerOf(const PrototypedSeries::Description& descripti
 
 }  // namespace
 
-Result<std::unique_ptr<TimeSeries>> PrototypedSeries::make(const ProviderRequest& request) {
+Result<std::unique_ptr<RasterSeries>> PrototypedSeries::make(const ProviderRequest& request) {
   const ProviderRequest own = innerRequest(request, "Prototyped", valueAt(request.table, "Prototyped"));
   if (Result<void> valid = prototypedSchema().validate(own.table, own.where, own.path); !valid) {
     return tl::make_unexpected(std::move(valid.error()));
@@ -86,8 +86,8 @@ Result<std::unique_ptr<TimeSeries>> PrototypedSeries::make(const ProviderRequest
               own);
 }
 
-Result<std::unique_ptr<TimeSeries>> PrototypedSeries::make(const Description& description,
-                                                           const ProviderRequest& request) {
+Result<std::unique_ptr<RasterSeries>> PrototypedSeries::make(const Description& description,
+                                                             const ProviderRequest& request) {
   const Result<TimeQuantizer> quantizer = quantizerOf(description, request);
   if (!quantizer) {
     return tl::make_unexpected(quantizer.error());
@@ -100,7 +100,7 @@ Result<std::unique_ptr<TimeSeries>> PrototypedSeries::make(const Description& de
     return failure(fmt::format("the prototype has no {}", placeholder), placeOf(request, "Prototype"),
                    "put it where the time stands");
   }
-  return std::unique_ptr<TimeSeries>(
+  return std::unique_ptr<RasterSeries>(
       new PrototypedSeries(*quantizer, description, request.folder, placeOf(request, "Prototype")));
 }
 

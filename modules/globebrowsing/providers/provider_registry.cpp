@@ -16,6 +16,7 @@
 #include "globebrowsing/providers/tile_provider_by_date.h"
 #include "globebrowsing/providers/tile_provider_by_index.h"
 #include "globebrowsing/providers/tile_provider_by_level.h"
+#include "globebrowsing/source/service_description.h"
 
 namespace meridian::globebrowsing {
 
@@ -77,7 +78,8 @@ Result<LayerType> layerTypeOf(const ProviderRequest& request) {
   }
   const Value* value = request.table.find("Type");
   if (value == nullptr || value->isNil()) {
-    return LayerType::DefaultTileProvider;
+    const bool isTemporal = filePath != nullptr && filePath->string() != nullptr && mayHaveTimes(*filePath->string());
+    return isTemporal ? LayerType::TemporalTileProvider : LayerType::DefaultTileProvider;
   }
   const std::string* typeName = value->string();
   if (typeName == nullptr) {

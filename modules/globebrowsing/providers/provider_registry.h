@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <span>
 #include <string>
@@ -14,6 +13,7 @@
 
 namespace meridian::globebrowsing {
 
+class SeriesShare;
 class SourceTileStore;
 
 /// What a provider is made from.
@@ -24,8 +24,7 @@ struct ProviderRequest {
   std::string folder;  ///< of the asset file; relative paths start there
   /// Where the tiles of map services come from; null where nothing is fetched (--validate).
   std::shared_ptr<SourceTileStore> sourceTiles{};
-  /// Shared by the steps of a series, so that what holds for all of them is logged once.
-  std::shared_ptr<std::atomic<bool>> notesTold{};
+  std::shared_ptr<SeriesShare> share{};  ///< of the steps of a series; else null
 };
 
 /// The place of a key for errors: "earth.asset:12: Renderable.Layers.ColorLayers[1].FilePath".

@@ -1,22 +1,47 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "globebrowsing/network/fetcher.h"
+#include "globebrowsing/providers/capabilities_document.h"
 #include "globebrowsing/source/service_description.h"
 
 namespace meridian::globebrowsing {
+
+/// What the steps of a series have in common. Safe from any thread.
+class SeriesShare {
+ public:
+  /// Whether nobody has asked before: what holds for all of them is logged once.
+  [[nodiscard]] bool isFirstToTell() { return !told_.exchange(true); }
+  /// The document at that address: the last one asked for, where it is the same.
+  [[nodiscard]] std::shared_ptr<CapabilitiesDocument> documentOf(const std::string& url,
+                                                                 const std::shared_ptr<Fetcher>& fetcher);
+
+ private:
+  std::atomic<bool> told_{false};
+  std::mutex mutex_;
+  std::shared_ptr<CapabilitiesDocument> document_;
+};
 
 /// Finds out whether the data of a layer are the tiles of a map service, and if so of which: reads the description and
 /// has the capabilities fetched that it refers to. One thread at a time, a worker's.
 class ServiceOpening {
  public:
-  /// `filePath` and `where` as describeService takes them.
-  ServiceOpening(std::string filePath, std::string where, std::shared_ptr<Fetcher> fetcher)
-      : filePath_(std::move(filePath)), where_(std::move(where)), fetcher_(std::move(fetcher)) {}
+  /// `filePath` and `where` as describeService takes them; `share` of a series.
+  ServiceOpening(std::string filePath, std::string where, std::shared_ptr<Fetcher> fetcher,
+                 std::shared_ptr<SeriesShare> share)
+      : filePath_(std::move(filePath)),
+        where_(std::move(where)),
+        fetcher_(std::move(fetcher)),
+        share_(std::move(share)) {}
+  /// Of a layer of capabilities that are there.
+  ServiceOpening(CapabilitiesReference reference, std::shared_ptr<CapabilitiesDocument> document);
 
   /// Asks for what is missing, without blocking. Returns whether nothing is: then service() can be called. If not,
   /// `wake` is called once, from any thread, perhaps before this returns; then prepare again.
@@ -25,20 +50,22 @@ class ServiceOpening {
   /// The service; nothing: the data are GDAL's business. Errors: in the description; capabilities that could not be had
   /// (at once where their server is down) or are of no use.
   [[nodiscard]] Result<std::optional<TileService>> service();
+  /// The layer of capabilities that the data are; nothing where they are something else. Errors: in the description.
+  [[nodiscard]] Result<std::optional<CapabilitiesReference>> reference();
+  /// Of a reference: what it refers to.
+  [[nodiscard]] const std::shared_ptr<CapabilitiesDocument>& document() const { return document_; }
   /// What the description says and is not heeded, for the log.
   [[nodiscard]] std::vector<std::string> notes() const;
 
  private:
-  struct Document;
-  [[nodiscard]] Result<Fetched> read(const std::string& url) const;
+  const Result<ServiceDescription>& describe();
 
   std::string filePath_;
   std::string where_;
   std::shared_ptr<Fetcher> fetcher_;
+  std::shared_ptr<SeriesShare> share_;
   std::optional<Result<ServiceDescription>> description_;
-  std::shared_ptr<Document> document_;
-  FetchRequest request_;
-  std::unique_ptr<PendingFetch> fetch_;
+  std::shared_ptr<CapabilitiesDocument> document_;
 };
 
 }  // namespace meridian::globebrowsing

@@ -7,7 +7,9 @@
 #include "globebrowsing/providers/date_text.h"
 #include "globebrowsing/providers/default_tile_provider.h"
 #include "globebrowsing/providers/inner_providers.h"
+#include "globebrowsing/providers/service_series.h"
 #include "globebrowsing/providers/temporal_document.h"
+#include "globebrowsing/source/source_tile_store.h"
 #include "host/api/log.h"
 
 namespace meridian::globebrowsing {
@@ -40,7 +42,7 @@ Result<std::unique_ptr<TimeSeries>> seriesOf(std::string_view document, const Pr
       });
 }
 
-/// Null for a file that is to be read first.
+/// Null for what is to be read first: a file, or capabilities.
 Result<std::unique_ptr<TimeSeries>> seriesOf(const ProviderRequest& request) {
   if (!valueAt(request.table, "Folder").isNil()) {
     return FolderSeries::make(request);
@@ -53,7 +55,7 @@ Result<std::unique_ptr<TimeSeries>> seriesOf(const ProviderRequest& request) {
     return failure("a temporal layer needs a table Prototyped or Folder", placeOf(request, "Mode"),
                    "give one of them, and Mode with its name");
   }
-  if (dataPath(*filePath, request.folder).kind == DataPath::Kind::File) {
+  if (dataPath(*filePath, request.folder).kind != DataPath::Kind::Document || mayHaveTimes(*filePath)) {
     return nullptr;
   }
   return seriesOf(*filePath, request);
@@ -73,7 +75,9 @@ const Schema& TemporalTileProvider::schema() {
         {"Prototyped", "Folder"}},
        {"Prototyped", Type::Table, "Time, TemporalResolution, TimeFormat and Prototype"},
        {"Folder", Type::Table, "Folder and Format: a file for each step"},
-       {"FilePath", Type::String, "of older assets: an <OpenSpaceTemporalGDALDataset>, or a file that holds one"},
+       {"FilePath", Type::String,
+        "a layer of a WMS or WMTS with times, as docs/services.md tells; or, of older assets, an "
+        "<OpenSpaceTemporalGDALDataset>, or a file that holds one"},
        {"UseFixedTime", Type::Boolean, "whether FixedTime is shown whatever the time"},
        {"FixedTime", Type::String, "the date to show then"},
        {"Interpolation", Type::Boolean, "whether steps are blended into each other; without effect here"},
@@ -108,8 +112,13 @@ Result<std::shared_ptr<TileProvider>> TemporalTileProvider::make(const ProviderR
 }
 
 TemporalTileProvider::TemporalTileProvider(ProviderRequest request, std::unique_ptr<TimeSeries> series)
-    : request_(std::move(request)), isFile_(series == nullptr), rasters_(request_), series_(std::move(series)) {
-  rasters_.notesTold = std::make_shared<std::atomic<bool>>(false);
+    : request_(std::move(request)), isNamed_(series == nullptr), rasters_(request_), series_(std::move(series)) {
+  rasters_.share = std::make_shared<SeriesShare>();
+  if (isNamed_ && request_.sourceTiles != nullptr) {
+    opening_ = std::make_unique<ServiceOpening>(
+        dataPath(*valueAt(request_.table, "FilePath").string(), request_.folder).text, placeOf(request_, "FilePath"),
+        request_.sourceTiles->fetcher(), rasters_.share);
+  }
   owner_.addProperty(useFixedTime);
   owner_.addProperty(fixedTime);
 }
@@ -123,29 +132,50 @@ Result<void> TemporalTileProvider::readFixedTime() {
 }
 
 Result<void> TemporalTileProvider::check() const {
-  return isFile_ ? checkData(dataPath(*valueAt(request_.table, "FilePath").string(), request_.folder),
-                             placeOf(request_, "FilePath"))
-                 : series_->check();
+  return isNamed_ ? checkData(dataPath(*valueAt(request_.table, "FilePath").string(), request_.folder),
+                              placeOf(request_, "FilePath"))
+                  : series_->check();
+}
+
+bool TemporalTileProvider::prepareData(const std::function<void()>& wake) {
+  return opening_ == nullptr || !check() || opening_->prepare(wake);
 }
 
 Result<void> TemporalTileProvider::openData() {
   if (Result<void> checked = check(); !checked) {
     return checked;
   }
-  if (isFile_) {
-    const DataPath path = dataPath(*valueAt(request_.table, "FilePath").string(), request_.folder);
-    // Relative paths in the file start at the file.
-    rasters_.folder = std::filesystem::path(path.text).parent_path().string();
-    Result<std::unique_ptr<TimeSeries>> series =
-        readDocument(path.text, placeOf(request_, "FilePath")).and_then([&](const std::string& text) {
-          return seriesOf(text, rasters_);
-        });
+  if (isNamed_) {
+    Result<std::unique_ptr<TimeSeries>> series = openSeries();
+    opening_.reset();
     if (!series) {
       return tl::make_unexpected(std::move(series.error()));
     }
     series_ = std::move(*series);
   }
   return series_->open();
+}
+
+Result<std::unique_ptr<TimeSeries>> TemporalTileProvider::openSeries() {
+  if (opening_ != nullptr) {
+    Result<std::optional<CapabilitiesReference>> reference = opening_->reference();
+    if (!reference) {
+      return tl::make_unexpected(std::move(reference.error()));
+    }
+    if (*reference) {
+      return ServiceSeries::make(std::move(**reference), opening_->document());
+    }
+  }
+  const DataPath path = dataPath(*valueAt(request_.table, "FilePath").string(), request_.folder);
+  if (path.kind != DataPath::Kind::File) {
+    return failure("FilePath names no series in time", placeOf(request_, "FilePath"),
+                   "name a layer of a WMS or WMTS by its capabilities, or use Mode, Prototyped and Folder");
+  }
+  // Relative paths in the file start at the file.
+  rasters_.folder = std::filesystem::path(path.text).parent_path().string();
+  return readDocument(path.text, placeOf(request_, "FilePath")).and_then([&](const std::string& text) {
+    return seriesOf(text, rasters_);
+  });
 }
 
 TimeSeries::Entry TemporalTileProvider::entryAt(const Time& now) const {
@@ -162,9 +192,11 @@ TileStep TemporalTileProvider::at(const Time& now) const {
 }
 
 Result<std::shared_ptr<TileProvider>> TemporalTileProvider::make(const Time& now) const {
-  return series_->filePath(entryAt(now).instant).and_then([this](std::string path) {
-    return makeInner(rasterRequest(rasters_, std::move(path)));
-  });
+  return series_->tiles(entryAt(now).instant, rasters_);
+}
+
+Result<std::shared_ptr<TileProvider>> RasterSeries::tiles(Instant entry, const ProviderRequest& rasters) const {
+  return filePath(entry).and_then([&](std::string path) { return makeInner(rasterRequest(rasters, std::move(path))); });
 }
 
 }  // namespace meridian::globebrowsing

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "globebrowsing/providers/provider_registry.h"
+#include "globebrowsing/providers/service_opening.h"
 #include "globebrowsing/providers/tile_steps.h"
 #include "globebrowsing/providers/time_series.h"
 #include "host/api/property.h"
@@ -13,13 +15,13 @@
 namespace meridian::globebrowsing {
 
 /// Another raster for each time: TemporalTileProvider. Its rasters are named by a prototype, by the files of a folder,
-/// or by the XML of older assets; all have the keys of the layer's table.
+/// by the XML of older assets, or by the times of a map service's layer; all have the keys of the layer's table.
 class TemporalTileProvider final : public SteppedTileProvider {
  public:
   [[nodiscard]] static const Schema& schema();
   [[nodiscard]] static Result<std::shared_ptr<TileProvider>> make(const ProviderRequest& request);
 
-  /// Without a series it is in the XML file that the table's FilePath names, and read when opened.
+  /// Without a series it is what the table's FilePath names, an XML file or capabilities, and read when opened.
   TemporalTileProvider(ProviderRequest request, std::unique_ptr<TimeSeries> series);
 
   [[nodiscard]] Result<void> check() const override;
@@ -31,15 +33,18 @@ class TemporalTileProvider final : public SteppedTileProvider {
   StringProperty fixedTime{{"FixedTime", "Fixed time", "The date to show; empty: the scene's time"}};
 
  private:
+  [[nodiscard]] bool prepareData(const std::function<void()>& wake) override;
   [[nodiscard]] Result<void> openData() override;
+  [[nodiscard]] Result<std::unique_ptr<TimeSeries>> openSeries();
   [[nodiscard]] TimeSeries::Entry entryAt(const Time& now) const;
   Result<void> readFixedTime();
 
   const ProviderRequest request_;
-  const bool isFile_;                      ///< the series is in a file
-  ProviderRequest rasters_;                ///< what each of them is made from; final once open
-  std::unique_ptr<TimeSeries> series_;     ///< likewise
-  std::optional<Time::UtcInstant> fixed_;  ///< FixedTime, where it is a date
+  const bool isNamed_;                       ///< the series is in what FilePath names
+  std::unique_ptr<ServiceOpening> opening_;  ///< until it is open; null where there is no network
+  ProviderRequest rasters_;                  ///< what each of them is made from; final once open
+  std::unique_ptr<TimeSeries> series_;       ///< likewise
+  std::optional<Time::UtcInstant> fixed_;    ///< FixedTime, where it is a date
   PropertyOwner owner_{"TileProvider", "Tile provider", "Which time is shown"};
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 namespace meridian::globebrowsing {
 
 struct ProviderRequest;
+class TileProvider;
 
 /// Which raster belongs to which time: what a TemporalTileProvider shows. Opened once, by a worker; immutable after
 /// that and safe from any thread.
@@ -35,12 +37,21 @@ class TimeSeries {
   [[nodiscard]] virtual Entry at(Instant now) const = 0;
   /// What a fixed time shows.
   [[nodiscard]] virtual Entry atFixed(Instant fixed) const = 0;
+  /// The provider of an entry's tiles, unopened; `rasters` is what the keys of each are.
+  [[nodiscard]] virtual Result<std::shared_ptr<TileProvider>> tiles(Instant entry,
+                                                                    const ProviderRequest& rasters) const = 0;
+};
+
+/// A series of rasters that have names.
+class RasterSeries : public TimeSeries {
+ public:
   /// The FilePath of an entry's raster.
   [[nodiscard]] virtual Result<std::string> filePath(Instant entry) const = 0;
+  [[nodiscard]] Result<std::shared_ptr<TileProvider>> tiles(Instant entry, const ProviderRequest& rasters) const final;
 };
 
 /// A text with a placeholder for the time: Mode = "Prototyped", and the older XML.
-class PrototypedSeries final : public TimeSeries {
+class PrototypedSeries final : public RasterSeries {
  public:
   struct Description {
     std::string start;
@@ -50,10 +61,10 @@ class PrototypedSeries final : public TimeSeries {
     std::string prototype;  ///< every ${OpenSpaceTimeId} becomes the time
   };
   /// From the asset's table `Prototyped`. Errors say which key.
-  [[nodiscard]] static Result<std::unique_ptr<TimeSeries>> make(const ProviderRequest& request);
+  [[nodiscard]] static Result<std::unique_ptr<RasterSeries>> make(const ProviderRequest& request);
   /// `where` for errors; relative files start at `folder`.
-  [[nodiscard]] static Result<std::unique_ptr<TimeSeries>> make(const Description& description,
-                                                                const ProviderRequest& request);
+  [[nodiscard]] static Result<std::unique_ptr<RasterSeries>> make(const Description& description,
+                                                                  const ProviderRequest& request);
 
   [[nodiscard]] Result<void> check() const override;
   [[nodiscard]] Entry at(Instant now) const override;
@@ -74,10 +85,10 @@ class PrototypedSeries final : public TimeSeries {
 };
 
 /// The files of a folder, each with the time that its name begins with: Mode = "Folder".
-class FolderSeries final : public TimeSeries {
+class FolderSeries final : public RasterSeries {
  public:
   /// From the asset's table `Folder`. Errors say which key.
-  [[nodiscard]] static Result<std::unique_ptr<TimeSeries>> make(const ProviderRequest& request);
+  [[nodiscard]] static Result<std::unique_ptr<RasterSeries>> make(const ProviderRequest& request);
 
   [[nodiscard]] Result<void> check() const override;
   /// Reads the folder. Errors: none of its files has a time.

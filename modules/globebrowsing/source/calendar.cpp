@@ -319,14 +319,4 @@ std::int64_t periodsUntil(CalendarMilliseconds from, const CalendarPeriod& perio
   return count;
 }
 
-CalendarMilliseconds calendarOf(const Time& time) {
-  // Whatever lies beyond the calendar is before or after all that services have.
-  const std::optional<CalendarInstant> instant = readInstant(time.utc());
-  return instant ? instant->at : (time.tdbSeconds() < 0 ? -longest : longest);
-}
-
-Result<Time> timeOf(CalendarMilliseconds at) {
-  return Time::fromUtc(writeInstant(at, {7, 3, false, true, 'T'}));
-}
-
 }  // namespace meridian::globebrowsing

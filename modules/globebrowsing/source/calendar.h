@@ -10,7 +10,7 @@
 namespace meridian::globebrowsing {
 
 /// A date and time of day in the proleptic Gregorian calendar, UTC, without leap seconds: milliseconds from
-/// 1970-01-01T00:00:00, as services count theirs. 23:59:60 is the next midnight.
+/// 1970-01-01T00:00:00, as services count theirs. Those of Time::UtcInstant; 23:59:60 in a text is the next midnight.
 using CalendarMilliseconds = std::int64_t;
 
 /// A period of ISO 8601: "P1Y2M3DT4H5M6.5S", "P2W". Years and months are the calendar's, all else has a length.
@@ -50,8 +50,8 @@ struct CalendarInstant {
 [[nodiscard]] std::int64_t periodsUntil(CalendarMilliseconds from, const CalendarPeriod& period,
                                         CalendarMilliseconds at);
 
-[[nodiscard]] CalendarMilliseconds calendarOf(const Time& time);
-/// Errors: a year outside what Time knows.
-[[nodiscard]] Result<Time> timeOf(CalendarMilliseconds at);
+[[nodiscard]] inline CalendarMilliseconds calendarOf(const Time& time) {
+  return time.utcInstant().time_since_epoch().count();
+}
 
 }  // namespace meridian::globebrowsing

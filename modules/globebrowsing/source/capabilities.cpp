@@ -211,8 +211,8 @@ Result<DimensionValue> dimensionValue(const LayerDimension& dimension, const Lay
     if (!dimension.defaultValue.empty()) {
       return DimensionValue{dimension.defaultValue, true};
     }
-    const auto last = TimeDimension::parse(dimension.values, {}, Time::now()).last();
-    return DimensionValue{last ? last->text : std::string(), false};
+    const TimeDimension times = TimeDimension::parse(dimension.values, {}, Time::now());
+    return DimensionValue{times.isEmpty() ? std::string() : times.text(*times.last()), false};
   }
   const std::vector<std::string> values = split(dimension.values, ",");
   for (const auto& [name, value] : choices.dimensions) {

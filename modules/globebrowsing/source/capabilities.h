@@ -134,7 +134,7 @@ struct LayerChoices {
   std::string format{};
   std::string crs{};                                ///< of maps
   std::string matrixSet{};                          ///< of tiles
-  std::string time{};                               ///< a value of the time dimension, as TimeValue has it
+  std::string time{};                               ///< a value of the time dimension, as TimeDimension::text has it
   std::map<std::string, std::string> dimensions{};  ///< values of others, by name
   bool isTransparent = true;                        ///< maps without background, where the format has alpha
   /// Further parameters of the query, such as a vendor's, name and value.

@@ -121,7 +121,7 @@ std::string document(const TileService& service, const std::string& element, con
 }
 
 /// A WMS: its parameters are elements, and the rest of its address stays.
-Result<std::string> documentOfMaps(const Capabilities& capabilities, const TileService& service) {
+Result<std::string> documentOfMaps(const Capabilities& capabilities, const TileService& service, bool followsTime) {
   const std::string address = service.url({0, service.matrices[0].firstColumn, service.matrices[0].firstRow});
   const auto parameter = [&](std::string_view name) { return parameterOf(address, name).value_or(""); };
   const bool isNew = isWmsThree(capabilities.version);
@@ -167,9 +167,22 @@ Result<std::string> documentOfMaps(const Capabilities& capabilities, const TileS
     --kept;
   }
   const auto size = [&](std::int64_t tiles, int tile) { return (tiles * tile) << kept; };
-  return document(moved, element + "  </Service>", window,
+  element += "  </Service>";
+  if (followsTime) {
+    element += "\n  <GetCapabilitiesUrl>" + escapedXml(capabilities.url) + "</GetCapabilitiesUrl>";
+  }
+  return document(moved, element, window,
                   fmt::format("<SizeX>{}</SizeX><SizeY>{}</SizeY>", size(columns, coarsest.tileWidth),
                               size(rows, coarsest.tileHeight)));
+}
+
+std::string wmtsPath(const Capabilities& capabilities, const CapabilitiesLayer& layer, const LayerChoices& choices) {
+  std::string path = "WMTS:" + capabilities.url + ",layer=\"" + layer.identifier + "\"";
+  for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{
+           {"style", choices.style}, {"tilematrixset", choices.matrixSet}, {"time", choices.time}}) {
+    path += value.empty() ? std::string() : "," + name + "=\"" + value + "\"";
+  }
+  return path;
 }
 
 std::string descriptionOf(const CapabilitiesLayer& layer) {
@@ -209,15 +222,16 @@ Result<LayerAsset> assetOf(const Capabilities& capabilities, const CapabilitiesL
   if (!service) {
     return tl::make_unexpected(std::move(service.error()));
   }
-  Result<std::string> path = layer.matrixSets.empty() && capabilities.kind == CapabilitiesKind::Wms
-                                 ? documentOfMaps(capabilities, *service)
-                                 : gdalWmsOf(*service);
-  if (!path && capabilities.kind == CapabilitiesKind::Wmts) {
-    path = "WMTS:" + capabilities.url + ",layer=\"" + layer.identifier + "\"";
-    for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{
-             {"style", choices.style}, {"tilematrixset", choices.matrixSet}, {"time", choices.time}}) {
-      *path += value.empty() ? std::string() : "," + name + "=\"" + value + "\"";
-    }
+  const bool isWmts = capabilities.kind == CapabilitiesKind::Wmts;
+  const bool followsTime = layer.timeDimension() != nullptr && choices.time.empty();
+  Result<std::string> path = std::string();
+  if (layer.matrixSets.empty() && capabilities.kind == CapabilitiesKind::Wms) {
+    path = documentOfMaps(capabilities, *service, followsTime);
+  } else if (!isWmts || !followsTime) {
+    path = gdalWmsOf(*service);
+  }
+  if (isWmts && (!path || path->empty())) {
+    path = wmtsPath(capabilities, layer, choices);
   }
   if (!path) {
     return tl::make_unexpected(std::move(path.error()));

@@ -22,8 +22,9 @@ struct AssetPlace {
 
 /// What to write of a layer of these capabilities. FilePath is what OpenSpace opens as well: for maps a `<GDAL_WMS>`
 /// document of the service WMS; for regular pyramids with plain numbers (most of WMTS, TMS and ArcGIS) one of the
-/// service TMS; for other WMTS a string "WMTS:URL,layer=...". Errors: those of serviceOf; tiles that none of these can
-/// describe.
+/// service TMS; for other WMTS a string "WMTS:URL,layer=...". A WMS or WMTS layer with times, none of them chosen, is
+/// named by its capabilities (the string, or the document's GetCapabilitiesUrl), so that here it follows time;
+/// OpenSpace shows the service's default of it. Errors: those of serviceOf; tiles that none of these can describe.
 [[nodiscard]] Result<LayerAsset> assetOf(const Capabilities& capabilities, const CapabilitiesLayer& layer,
                                          const LayerChoices& choices, const AssetPlace& place);
 

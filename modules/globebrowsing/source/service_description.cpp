@@ -94,10 +94,12 @@ void choose(CapabilitiesReference& reference, const std::string& key, std::strin
     reference.choices.time = value;
   } else if (name == "format") {
     reference.choices.format = value;
+  } else if (name == "crs") {
+    reference.choices.crs = value;
   }
 }
 
-CapabilitiesReference referenceOfWmts(std::string_view text) {
+CapabilitiesReference referenceOf(std::string_view text) {
   CapabilitiesReference reference;
   std::vector<std::string> parts;
   bool isQuoted = false;
@@ -135,6 +137,30 @@ Result<ServiceDescription> describeWmtsDocument(const XmlDocument& document) {
   return result;
 }
 
+/// The server's word counts for all that the document says besides: it is there for programs that read no capabilities.
+CapabilitiesReference referenceOfMaps(const pugi::xml_node& root) {
+  const pugi::xml_node service = child(root, "Service");
+  CapabilitiesReference reference;
+  reference.url = repairedUrl(text(root, "GetCapabilitiesUrl"));
+  reference.layer = text(service, "Layers");
+  reference.choices.style = text(service, "Styles");
+  reference.choices.format = text(service, "ImageFormat");
+  reference.choices.crs = text(service, "CRS").empty() ? text(service, "SRS") : text(service, "CRS");
+  reference.choices.isTransparent = boolean(text(service, "Transparent")).value_or(false);
+  const std::string server = text(service, "ServerUrl");
+  for (const std::string& part : split(server.substr(std::min(server.find('?') + 1, server.size())), "&")) {
+    const std::size_t equals = std::min(part.find('='), part.size());
+    const std::string name = percentDecoded(part.substr(0, equals));
+    const std::string value = percentDecoded(part.substr(std::min(equals + 1, part.size())));
+    if (equalIgnoringCase(name, "time")) {
+      reference.choices.time = value;
+    } else {
+      reference.choices.parameters.emplace_back(name, value);
+    }
+  }
+  return reference;
+}
+
 Result<ServiceDescription> describeDocument(const std::string& content, const Source& source,
                                             const std::string& folder) {
   auto document = XmlDocument::parse(content, source.where);
@@ -143,6 +169,10 @@ Result<ServiceDescription> describeDocument(const std::string& content, const So
   }
   const pugi::xml_node root = document->root();
   ServiceDescription result;
+  if (isNamed(root, "GDAL_WMS") && !text(root, "GetCapabilitiesUrl").empty()) {
+    result.reference = referenceOfMaps(root);
+    return result;
+  }
   if (isNamed(root, "GDAL_WMS")) {
     auto read = readGdalWms(content, source.where);
     if (!read) {
@@ -228,7 +258,11 @@ Result<ServiceDescription> describe(const Source& source) {
   const std::string prefix = lowerCase(text.substr(0, 5));
   ServiceDescription result;
   if (prefix == "wmts:") {
-    result.reference = referenceOfWmts(std::string_view(text).substr(5));
+    result.reference = referenceOf(std::string_view(text).substr(5));
+    return result;
+  }
+  if (prefix.starts_with("wms:") && containsIgnoringCase(text, ",layer=")) {
+    result.reference = referenceOf(std::string_view(text).substr(4));
     return result;
   }
   if (prefix.starts_with("wms:") && containsIgnoringCase(text, "layers=")) {
@@ -259,7 +293,18 @@ Result<ServiceDescription> describeService(const std::string& filePath, const st
   return describe({filePath, where, 0});
 }
 
-Result<TileService> serviceOf(const CapabilitiesReference& reference, const Capabilities& capabilities) {
+bool mayHaveTimes(const std::string& filePath) {
+  const std::string prefix = lowerCase(std::string_view(filePath).substr(0, 5));
+  const bool isNamed = isDocument(filePath) ? containsIgnoringCase(filePath, "GetCapabilitiesUrl")
+                                            : prefix == "wmts:" || prefix.starts_with("wms:");
+  if (!isNamed) {
+    return false;
+  }
+  const Result<ServiceDescription> described = describeService(filePath, {});
+  return described && described->reference && described->reference->choices.time.empty();
+}
+
+Result<const CapabilitiesLayer*> layerOf(const CapabilitiesReference& reference, const Capabilities& capabilities) {
   const CapabilitiesLayer* layer = nullptr;
   if (!reference.layer.empty()) {
     layer = capabilities.find(reference.layer);
@@ -273,7 +318,13 @@ Result<TileService> serviceOf(const CapabilitiesReference& reference, const Capa
                                            : "the service has no layer '" + reference.layer + "'",
                    reference.url, "choose one that its capabilities list");
   }
-  return serviceOf(capabilities, *layer, reference.choices);
+  return layer;
+}
+
+Result<TileService> serviceOf(const CapabilitiesReference& reference, const Capabilities& capabilities) {
+  return layerOf(reference, capabilities).and_then([&](const CapabilitiesLayer* layer) {
+    return serviceOf(capabilities, *layer, reference.choices);
+  });
 }
 
 }  // namespace meridian::globebrowsing

@@ -31,11 +31,19 @@ struct ServiceDescription {
 /// - an address with places for a tile: "https://.../{z}/{x}/{y}.png" (url_template.h);
 /// - GDAL's "WMS:http://...?LAYERS=...&SRS=...&BBOX=..." (a GetMap request), "WMTS:URL,layer=...,style=...,
 ///   tilematrixset=...", and GDAL_WMTS documents of the same contents;
+/// - the same for a WMS: "WMS:URL,layer=...,style=...,crs=...", and a GDAL_WMS document that has a GetCapabilitiesUrl;
 /// - the address of an ArcGIS service: ".../MapServer?f=json", ".../ImageServer?f=json".
 /// `filePath` is absolute where it is a file. Reads that file and, of a VRT, its sibling, so call it on a worker; asks
 /// no server. Errors: a description of ours with something wrong in it. What is not ours is no error.
 [[nodiscard]] Result<ServiceDescription> describeService(const std::string& filePath, const std::string& where);
 
+/// Whether that is a layer of capabilities and no time of it is chosen, as far as the text itself tells: files are not
+/// read.
+[[nodiscard]] bool mayHaveTimes(const std::string& filePath);
+
+/// The layer that a reference means. Errors: there is none.
+[[nodiscard]] Result<const CapabilitiesLayer*> layerOf(const CapabilitiesReference& reference,
+                                                       const Capabilities& capabilities);
 /// The tiles that a reference means, once its document is here. `url` is where it was had.
 [[nodiscard]] Result<TileService> serviceOf(const CapabilitiesReference& reference, const Capabilities& capabilities);
 

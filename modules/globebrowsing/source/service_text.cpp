@@ -116,6 +116,24 @@ std::string percentEncoded(std::string_view text, std::string_view kept) {
   return result;
 }
 
+std::string percentDecoded(std::string_view text) {
+  std::string result;
+  result.reserve(text.size());
+  while (!text.empty()) {
+    unsigned value = 0;
+    const std::string_view digits = text.substr(1, 2);
+    if (text.front() == '%' && digits.size() == 2 &&
+        std::from_chars(digits.data(), digits.data() + 2, value, 16).ptr == digits.data() + 2) {
+      result.push_back(static_cast<char>(value));
+      text.remove_prefix(3);
+    } else {
+      result.push_back(text.front());
+      text.remove_prefix(1);
+    }
+  }
+  return result;
+}
+
 std::string withParameters(std::string_view url, const QueryParameters& parameters) {
   const std::size_t fragment = std::min(url.find('#'), url.size());
   url = url.substr(0, fragment);

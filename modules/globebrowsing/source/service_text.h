@@ -30,6 +30,9 @@ namespace meridian::globebrowsing {
 /// Everything but unreserved characters (RFC 3986, section 2.3) and those of `kept` as %XX.
 [[nodiscard]] std::string percentEncoded(std::string_view text, std::string_view kept = {});
 
+/// The opposite; what is no such escape stays.
+[[nodiscard]] std::string percentDecoded(std::string_view text);
+
 using QueryParameters = std::vector<std::pair<std::string, std::string>>;
 
 /// `url` with these parameters in its query: those of the same name (in any case) are replaced, all others kept as they

@@ -23,31 +23,44 @@ std::optional<CalendarInstant> readEnd(std::string_view text, CalendarMillisecon
   return readInstant(text);
 }
 
-/// Of milliseconds: the whole second not after them.
-CalendarMilliseconds wholeSecond(CalendarMilliseconds at) {
-  return (at >= 0 ? at / 1000 : -((999 - at) / 1000)) * 1000;
+/// Of an interval that has every instant in it: the longest of these that its ends are whole ones of.
+CalendarPeriod wholePeriod(CalendarMilliseconds start, CalendarMilliseconds end) {
+  for (const CalendarMilliseconds unit : {86'400'000, 3'600'000, 60'000}) {
+    if (start % unit == 0 && end % unit == 0) {
+      return {0, unit};
+    }
+  }
+  return {0, 1000};
 }
 
-std::optional<TimeValue> toValue(const std::optional<CalendarInstant>& found) {
-  if (!found) {
-    return std::nullopt;
+/// As many parts as such steps need: hours of "1990/2000/PT6H" are no years.
+CalendarStyle styleOfSteps(CalendarStyle style, const CalendarPeriod& period) {
+  const CalendarMilliseconds fraction = period.milliseconds % 1000;
+  const int needed = fraction != 0                           ? 7
+                     : period.milliseconds % 86'400'000 != 0 ? 6
+                     : period.milliseconds != 0              ? 3
+                     : period.months % 12 != 0               ? 2
+                                                             : 1;
+  if (fraction != 0) {
+    const int digits = fraction % 100 == 0 ? 1 : fraction % 10 == 0 ? 2 : 3;
+    style.fractionDigits = style.parts < 7 ? digits : std::max(style.fractionDigits, digits);
   }
-  const Result<Time> time = timeOf(found->at);
-  return time ? std::optional(TimeValue{*time, writeInstant(found->at, found->style)}) : std::nullopt;
+  style.parts = std::max(style.parts, needed);
+  return style;
 }
 
 }  // namespace
 
 TimeDimension TimeDimension::parse(std::string_view values, std::string_view defaultValue, const Time& now) {
   TimeDimension result;
-  const CalendarMilliseconds present = calendarOf(now);
+  const CalendarMilliseconds present = calendarOf(now) / 1000 * 1000;
   for (const std::string& part : split(values, ",")) {
     result.addPart(part, present);
   }
   std::stable_sort(result.instants_.begin(), result.instants_.end(),
                    [](const CalendarInstant& a, const CalendarInstant& b) { return a.at < b.at; });
   if (isNow(defaultValue)) {
-    result.default_ = result.latest(present);
+    result.default_ = result.atOrBefore(present);
   } else if (!trimmed(defaultValue).empty()) {
     result.default_ = readInstant(defaultValue);
     if (!result.default_) {
@@ -63,8 +76,11 @@ void TimeDimension::addPart(std::string_view part, CalendarMilliseconds now) {
     return;
   }
   const std::optional<CalendarInstant> instant = readEnd(part, now);
-  if (instant && timeOf(instant->at)) {
+  if (instant) {
     instants_.push_back(*instant);
+    if (!isNow(part) && writeInstant(instant->at, instant->style) != part) {
+      odd_.emplace(instant->at, part);
+    }
   } else if (problems_.size() < mostProblems) {
     problems_.push_back("'" + std::string(part.substr(0, 60)) + "' is no time");
   }
@@ -98,23 +114,18 @@ void TimeDimension::addInterval(std::string_view part, CalendarMilliseconds now)
     }
     period = *read;
   }
-  if (start->at > end->at || !timeOf(start->at) || !timeOf(end->at)) {
-    return refuse("ends before it begins, or lies beyond the calendar");
+  if (start->at > end->at) {
+    return refuse("ends before it begins");
   }
-  Interval interval{start->at, end->at, period, 1, start->style};
-  if (!period.isZero()) {
-    // A value is written with as many parts as its steps need: hours of "1990/2000/PT6H" are no years.
-    const bool hasTime = period.milliseconds % 86'400'000 != 0;
-    const int needed = hasTime ? 6 : period.milliseconds != 0 ? 3 : period.months % 12 != 0 ? 2 : 1;
-    interval.style.parts = std::max(interval.style.parts, needed);
-    const std::int64_t steps = periodsUntil(interval.start, period, interval.end);
-    interval.end = later(interval.start, period, steps);
-    interval.count = static_cast<std::uint64_t>(steps) + 1;
+  if (period.isZero()) {
+    period = wholePeriod(start->at, isNow(pieces[1]) ? start->at : end->at);
   }
-  intervals_.push_back(interval);
+  const std::int64_t steps = periodsUntil(start->at, period, end->at);
+  intervals_.push_back({start->at, later(start->at, period, steps), period, static_cast<std::uint64_t>(steps) + 1,
+                        styleOfSteps(start->style, period)});
 }
 
-TimeDimension::Found TimeDimension::latest(CalendarMilliseconds at) const {
+TimeDimension::Found TimeDimension::atOrBefore(CalendarMilliseconds at) const {
   Found found;
   const auto offer = [&](const CalendarInstant& instant) {
     if (!found || instant.at > found->at) {
@@ -128,23 +139,17 @@ TimeDimension::Found TimeDimension::latest(CalendarMilliseconds at) const {
     offer(*std::prev(after));
   }
   for (const Interval& interval : intervals_) {
-    if (at < interval.start) {
-      continue;
-    }
-    const CalendarMilliseconds within = std::min(at, interval.end);
-    if (interval.period.isZero()) {
-      CalendarStyle style = interval.style;
-      style.parts = std::max(style.parts, within == interval.start || within == interval.end ? 1 : 6);
-      offer({within, style});
-    } else {
-      const std::int64_t steps = periodsUntil(interval.start, interval.period, within);
+    if (at >= interval.end) {
+      offer({interval.end, interval.style});
+    } else if (at >= interval.start) {
+      const std::int64_t steps = periodsUntil(interval.start, interval.period, at);
       offer({later(interval.start, interval.period, steps), interval.style});
     }
   }
   return found;
 }
 
-TimeDimension::Found TimeDimension::earliest(CalendarMilliseconds at) const {
+TimeDimension::Found TimeDimension::atOrAfter(CalendarMilliseconds at) const {
   Found found;
   const auto offer = [&](const CalendarInstant& instant) {
     if (!found || instant.at < found->at) {
@@ -158,18 +163,12 @@ TimeDimension::Found TimeDimension::earliest(CalendarMilliseconds at) const {
     offer(*there);
   }
   for (const Interval& interval : intervals_) {
-    if (at > interval.end) {
-      continue;
-    }
-    const CalendarMilliseconds within = std::max(at, interval.start);
-    if (interval.period.isZero()) {
-      CalendarStyle style = interval.style;
-      style.parts = std::max(style.parts, within == interval.start || within == interval.end ? 1 : 6);
-      offer({within, style});
-    } else {
-      const std::int64_t steps = periodsUntil(interval.start, interval.period, within);
+    if (at <= interval.start) {
+      offer({interval.start, interval.style});
+    } else if (at <= interval.end) {
+      const std::int64_t steps = periodsUntil(interval.start, interval.period, at);
       const CalendarMilliseconds step = later(interval.start, interval.period, steps);
-      offer({step == within ? step : later(interval.start, interval.period, steps + 1), interval.style});
+      offer({step == at ? step : later(interval.start, interval.period, steps + 1), interval.style});
     }
   }
   return found;
@@ -183,50 +182,26 @@ std::uint64_t TimeDimension::count() const {
   return sum;
 }
 
-std::optional<TimeValue> TimeDimension::first() const {
-  return toValue(earliest(std::numeric_limits<CalendarMilliseconds>::min()));
+TimeDimension::Found TimeDimension::first() const {
+  return atOrAfter(std::numeric_limits<CalendarMilliseconds>::min());
 }
 
-std::optional<TimeValue> TimeDimension::last() const {
-  return toValue(latest(std::numeric_limits<CalendarMilliseconds>::max()));
+TimeDimension::Found TimeDimension::last() const {
+  return atOrBefore(std::numeric_limits<CalendarMilliseconds>::max());
 }
 
-std::optional<TimeValue> TimeDimension::defaultValue() const {
-  return default_ ? toValue(default_) : last();
-}
-
-std::optional<TimeValue> TimeDimension::atOrBefore(const Time& time) const {
-  return toValue(latest(calendarOf(time)));
-}
-
-std::optional<TimeValue> TimeDimension::nearest(const Time& time) const {
-  const CalendarMilliseconds at = calendarOf(time);
-  const Found before = latest(at);
-  const Found after = earliest(at);
+TimeDimension::Found TimeDimension::nearest(CalendarMilliseconds at) const {
+  const Found before = atOrBefore(at);
+  const Found after = atOrAfter(at);
   if (before && after) {
-    return toValue(at - before->at <= after->at - at ? before : after);
+    return at - before->at <= after->at - at ? before : after;
   }
-  return toValue(before ? before : after);
+  return before ? before : after;
 }
 
-std::optional<TimeValue> TimeDimension::next(const Time& time) const {
-  const CalendarMilliseconds at = calendarOf(time);
-  Found found = earliest(at + 1);
-  if (found && found->at == at + 1) {  // continuous, or a step that the whole second finds again
-    found = earliest(wholeSecond(at) + 1000);
-    found = found ? found : latest(std::numeric_limits<CalendarMilliseconds>::max());
-  }
-  return found && found->at > at ? toValue(found) : std::nullopt;
-}
-
-std::optional<TimeValue> TimeDimension::previous(const Time& time) const {
-  const CalendarMilliseconds at = calendarOf(time);
-  Found found = latest(at - 1);
-  if (found && found->at == at - 1) {
-    found = latest(wholeSecond(at - 1));
-    found = found ? found : earliest(std::numeric_limits<CalendarMilliseconds>::min());
-  }
-  return found && found->at < at ? toValue(found) : std::nullopt;
+std::string TimeDimension::text(const CalendarInstant& value) const {
+  const auto odd = odd_.find(value.at);
+  return odd == odd_.end() ? writeInstant(value.at, value.style) : odd->second;
 }
 
 }  // namespace meridian::globebrowsing

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,21 +12,18 @@
 
 namespace meridian::globebrowsing {
 
-/// A value of a time dimension.
-struct TimeValue {
-  Time time{};
-  std::string text{};  ///< as the service wants it back: in its own style
-};
-
 /// The instants that a service has: WMS 1.1.1 and 1.3.0, annex C and D, WMTS 1.0.0 section 7.1.1. A list of values and
-/// of intervals "start/end/period"; an interval without period (or with an empty or zero one) has every instant in it.
+/// of intervals "start/end/period". An interval without period (or with an empty or zero one) has every instant in it;
+/// of those, whole days are taken, or hours, minutes or seconds where its ends are no whole days.
 /// An end cut short means its beginning ("2013-12-31" is that midnight): what lies after it might be refused.
 /// Intervals are never expanded: a century of five-minute steps costs what one step costs.
 ///
 /// Steps are UTC's calendar: months and years as the calendar has them, and no leap seconds, as no service counts them.
-/// Immutable; safe from any thread.
+/// Immutable; safe from any thread. Nothing but parse() and text() allocates.
 class TimeDimension {
  public:
+  using Found = std::optional<CalendarInstant>;
+
   TimeDimension() = default;
   /// `values` is the text of a Dimension or Extent element, or the values of a WMTS dimension joined by commas;
   /// `defaultValue` may be empty, "current" or a value. `now` is what "present", "now" and "current" mean. Parts that
@@ -34,39 +32,41 @@ class TimeDimension {
 
   [[nodiscard]] bool isEmpty() const { return instants_.empty() && intervals_.empty(); }
   [[nodiscard]] const std::vector<std::string>& problems() const { return problems_; }
-  /// Values in all, a continuous interval counted as one; values that two parts share count twice.
+  /// Values in all; values that two parts share count twice.
   [[nodiscard]] std::uint64_t count() const;
 
-  [[nodiscard]] std::optional<TimeValue> first() const;
-  [[nodiscard]] std::optional<TimeValue> last() const;
-  /// The service's own; the last one where it names none.
-  [[nodiscard]] std::optional<TimeValue> defaultValue() const;
-  /// The latest value not after `time`; nothing before the first.
-  [[nodiscard]] std::optional<TimeValue> atOrBefore(const Time& time) const;
-  /// The value nearest to `time`, the earlier of two.
-  [[nodiscard]] std::optional<TimeValue> nearest(const Time& time) const;
-  /// Strictly after and before. In a continuous interval: the next and last whole second.
-  [[nodiscard]] std::optional<TimeValue> next(const Time& time) const;
-  [[nodiscard]] std::optional<TimeValue> previous(const Time& time) const;
+  [[nodiscard]] Found first() const;
+  [[nodiscard]] Found last() const;
+  /// The service's own, which need not be one of its values; nothing where it names none.
+  [[nodiscard]] Found defaultValue() const { return default_; }
+  /// The latest value not after `at`; nothing before the first.
+  [[nodiscard]] Found atOrBefore(CalendarMilliseconds at) const;
+  /// The value nearest to `at`, the earlier of two.
+  [[nodiscard]] Found nearest(CalendarMilliseconds at) const;
+  /// Strictly after and before.
+  [[nodiscard]] Found next(CalendarMilliseconds at) const { return atOrAfter(at + 1); }
+  [[nodiscard]] Found previous(CalendarMilliseconds at) const { return atOrBefore(at - 1); }
+
+  /// One of its values as the service wants it back: in its own style.
+  [[nodiscard]] std::string text(const CalendarInstant& value) const;
 
  private:
   struct Interval {
     CalendarMilliseconds start = 0;
-    CalendarMilliseconds end = 0;  ///< the last value, but for continuous ones
+    CalendarMilliseconds end = 0;  ///< the last value
     CalendarPeriod period{};
     std::uint64_t count = 1;
     CalendarStyle style{};
   };
-  using Found = std::optional<CalendarInstant>;
 
   void addPart(std::string_view part, CalendarMilliseconds now);
   void addInterval(std::string_view part, CalendarMilliseconds now);
-  [[nodiscard]] Found latest(CalendarMilliseconds at) const;    ///< not after
-  [[nodiscard]] Found earliest(CalendarMilliseconds at) const;  ///< not before
+  [[nodiscard]] Found atOrAfter(CalendarMilliseconds at) const;
 
   std::vector<CalendarInstant> instants_;  ///< sorted
   std::vector<Interval> intervals_;
-  std::optional<CalendarInstant> default_;
+  Found default_;
+  std::map<CalendarMilliseconds, std::string> odd_;  ///< values that we would write in another way
   std::vector<std::string> problems_;
 };
 

@@ -1,0 +1,79 @@
+// A map service's times on the screen.
+#include "globe_fixture.h"
+#include "support/nginx_server.h"
+#include "support/timed_pyramid.h"
+
+namespace meridian::globebrowsing {
+namespace {
+
+class ServiceTimesTest : public GlobeTest {
+ protected:
+  void SetUp() override {
+    GlobeTest::SetUp();
+    if (!graphics_) {
+      return;
+    }
+    if (!NginxServer::isInstalled()) {
+      GTEST_SKIP() << "nginx is not installed; install nginx-light";
+    }
+    setModuleProperty("NetworkCacheMode", "off");
+    server_ = std::make_unique<NginxServer>();
+    pyramid_.write(server_->root(), server_->http1());
+    time_ = TimedPyramid::timeOf(0);
+  }
+  void TearDown() override {
+    GlobeTest::TearDown();
+    server_.reset();
+  }
+  [[nodiscard]] TimedPicture seen() const {
+    std::vector<std::uint8_t> rgba(std::size_t{4} * width * height);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target_->framebuffer());
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    constexpr double surelyGlobe = 60.0;
+    return TimedPicture::look(rgba, width, height, surelyGlobe);
+  }
+
+  const TimedPyramid pyramid_{.days = 20, .levels = 2};
+  std::unique_ptr<NginxServer> server_;
+};
+
+TEST_F(ServiceTimesTest, PlaysThroughDaysAndIsNeverBlank) {
+  RenderableGlobe& globe =
+      addGlobe({{"ColorLayers", listOf({fileLayer("Days", TimedPyramid::filePath(server_->http1()))})}});
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(seen().colour, 0);
+  int last = 0;
+  int changes = 0;
+  const int frames = 200;
+  for (int n = 1; n <= frames; ++n) {
+    time_ = TimedPyramid::timeOf(19.5 * n / frames);
+    frame();
+    const TimedPicture now = seen();
+    ASSERT_FALSE(now.isBlank) << "in frame " << n;
+    ASSERT_FALSE(now.isMixed) << "in frame " << n;
+    ASSERT_GE(now.colour, last) << "back in time in frame " << n;
+    ASSERT_LE(now.colour, 19.5 * n / frames) << "ahead of time in frame " << n;
+    changes += now.colour != last ? 1 : 0;
+    last = now.colour;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_GE(changes, 3);
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(seen().colour, 19);
+  const Layer& layer = *globe.layers().group(LayerGroupId::ColorLayers).find("Days");
+  EXPECT_EQ(layer.lastError.get(), "");
+  EXPECT_EQ(server_->accessLog().find(" 404 "), std::string::npos) << server_->accessLog();
+}
+
+TEST_F(ServiceTimesTest, JumpsToATimeAndBack) {
+  addGlobe({{"ColorLayers", listOf({fileLayer("Days", TimedPyramid::filePath(server_->http1()))})}});
+  ASSERT_TRUE(settle());
+  for (const int day : {7, 3, 19, 0}) {
+    time_ = TimedPyramid::timeOf(day + 0.5);
+    ASSERT_TRUE(settle([&] { ASSERT_FALSE(seen().isBlank); }));
+    EXPECT_EQ(seen().colour, day);
+  }
+}
+
+}  // namespace
+}  // namespace meridian::globebrowsing
