@@ -120,8 +120,10 @@ class OutageBenchmark {
     const std::string lost = outage == Outage::Down ? "LostWhileDown" : "LostWhileStalled";
     outage == Outage::Down ? server_.refuse() : server_.stall();
     if (outage == Outage::Down) {
-      if (auto added = add(*online_, "Kept"); !added) {
-        return added;
+      // From the disk, though past its lifetime. Before the other: a chunk is composed once all its layers have
+      // answered.
+      if (auto shown = add(*online_, "Kept").and_then([&] { return online_->settle(); }); !shown) {
+        return shown;
       }
     }
     if (auto added = add(*offline_, lost).and_then([&] { return add(*online_, lost); }); !added) {
@@ -169,7 +171,7 @@ class OutageBenchmark {
     const Value table = Table{{},
                               {{"Identifier", layer},
                                {"Enabled", true},
-                               {"Opacity", layer == "Kept" ? 1.0 : 0.5},
+                               {"Settings", Table{{}, {{"Multiplier", layer == "Kept" ? 1.0 : 0.5}}}},
                                {"FilePath", JpegPyramid::document(server_.url(layer))}}};
     return earth.layers().addLayer("ColorLayers", {table, "bench", "Layer", ""}).map([](auto*) {});
   }

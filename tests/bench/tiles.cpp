@@ -1,6 +1,6 @@
 // Tiles a second from a server on this machine to decoded pixels in memory: ours, curl_multi and libjpeg-turbo alone,
 // and GDAL's TMS driver, in turn in one process.
-//   bench-tiles [--rounds N] [--only http|tls|latency]
+//   bench-tiles [--rounds N] [--only http|tls|http2|latency]
 // Prints one JSON object.
 
 #include <algorithm>
