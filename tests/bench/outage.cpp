@@ -146,7 +146,9 @@ class OutageBenchmark {
     if (online_->picture() == offline_->picture()) {
       return failure("the layer is not seen");
     }
-    return remove(*offline_, lost).and_then([&] { return remove(*online_, lost); });
+    return remove(*offline_, lost).and_then([&] { return remove(*online_, lost); }).and_then([&] {
+      return online_->settle();
+    });
   }
 
   [[nodiscard]] std::string report() const {
