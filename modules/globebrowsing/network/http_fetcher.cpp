@@ -51,6 +51,7 @@ class HttpFetcher::Engine {
   void enqueue(Id id, Flight& flight);
   void startTransfers();
   void ended(TransferEnding ending);
+  bool finishAttempt(Id id, const RequestQueue::Ending& ending);
   void answered(Id id, TransferEnding& ending);
   void failed(Id id, TransferFailure failure, const HeaderFields& fields);
   void serveStale(Id id);
@@ -138,8 +139,8 @@ std::unique_ptr<PendingFetch> HttpFetcher::Engine::fetch(FetchRequest request, D
 
 void HttpFetcher::Engine::accept(const Fetched& answer) {
   if (answer.origin == nullptr || answer.body == nullptr || options_.cache.folder.empty() ||
-      cacheMode_ != CacheMode::ReadWrite ||
-      !isStorable(answer.origin->status, answer.origin->facts.fields) || answer.origin->isAccepted.exchange(true)) {
+      cacheMode_ != CacheMode::ReadWrite || !isStorable(answer.origin->status, answer.origin->facts.fields) ||
+      answer.origin->isAccepted.exchange(true)) {
     return;
   }
   cache_.store(answer.origin->key, {answer.origin->facts, answer.body});
@@ -319,8 +320,8 @@ void HttpFetcher::Engine::startTransfers() {
 void HttpFetcher::Engine::ended(TransferEnding ending) {
   const Id id = ending.id;
   const auto place = flights_.find(id);
-  if (place == flights_.end()) {
-    return;  // cancelled by a `done` of the same round
+  if (place == flights_.end() || !queue_.isRunning(id)) {
+    return;  // cancelled by a `done` of the same round, or recalled in it
   }
   const Flight& flight = place->second;
   if (ending.isMultiplexed) {
@@ -343,8 +344,17 @@ void HttpFetcher::Engine::ended(TransferEnding ending) {
   failed(id, std::move(failure), ending.facts.fields);
 }
 
+/// True when it will be tried again.
+bool HttpFetcher::Engine::finishAttempt(Id id, const RequestQueue::Ending& ending) {
+  const bool isTriedAgain = queue_.finish(id, ending, Clock::now());
+  for (const Id hanging : queue_.recallProbes(flights_.at(id).address.host)) {
+    transfers_.cancel(hanging);
+  }
+  return isTriedAgain;
+}
+
 void HttpFetcher::Engine::answered(Id id, TransferEnding& ending) {
-  queue_.finish(id, {Outcome::Done}, Clock::now());
+  finishAttempt(id, {Outcome::Done});
   Flight& flight = flights_.at(id);
   if (isEmptyStatus(flight.request, ending.status)) {
     negatives_.add(flight.key, ending.status, Clock::now());
@@ -379,7 +389,7 @@ void HttpFetcher::Engine::failed(Id id, TransferFailure failure, const HeaderFie
   if (const auto wait = fields.find("Retry-After"); wait && failure.outcome != Outcome::Final) {
     ending.retryAfter = retryAfter(options_.retry, *wait, std::time(nullptr));
   }
-  const bool isTriedAgain = queue_.finish(id, ending, Clock::now());
+  const bool isTriedAgain = finishAttempt(id, ending);
   if (failure.outcome != Outcome::Final && mayServeStale(flight)) {
     queue_.remove(id, Clock::now());
     serveStale(id);

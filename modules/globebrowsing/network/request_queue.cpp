@@ -73,6 +73,7 @@ std::optional<RequestQueue::Id> RequestQueue::start(TimePoint now) {
   if (host.breaker.state() != CircuitBreaker::State::Up) {
     host.breaker.beginProbe(now);
     host.probe = first->id;
+    host.probes.push_back(first->id);
   }
   host.waiting.erase(*first);
   request.state = State::Running;
@@ -124,6 +125,30 @@ bool RequestQueue::finish(Id id, const Ending& ending, TimePoint now) {
   }
   wait(request, id, now + delay, now);
   return true;
+}
+
+std::vector<RequestQueue::Id> RequestQueue::recallProbes(const std::string& name) {
+  std::vector<Id> recalled;
+  Host& host = hosts_.at(name);
+  if (host.breaker.state() != CircuitBreaker::State::Up) {
+    return recalled;
+  }
+  for (const Id id : std::exchange(host.probes, {})) {
+    if (isRunning(id)) {
+      Request& request = requests_.at(id);
+      release(request);
+      request.state = State::Waiting;
+      host.waiting.insert({request.priority, id});
+      recalled.push_back(id);
+    }
+  }
+  host.probe.reset();
+  return recalled;
+}
+
+bool RequestQueue::isRunning(Id id) const {
+  const auto place = requests_.find(id);
+  return place != requests_.end() && place->second.state == State::Running;
 }
 
 std::optional<RequestQueue::TimePoint> RequestQueue::wakeAt(TimePoint now) const {

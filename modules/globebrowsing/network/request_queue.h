@@ -10,6 +10,7 @@
 #include <string>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "globebrowsing/network/circuit_breaker.h"
 #include "globebrowsing/network/retry_policy.h"
@@ -55,6 +56,10 @@ class RequestQueue {
   std::optional<Id> start(TimePoint now);
   /// A running request has ended. True when it will be tried again, and stays; false when it is over, and is gone.
   bool finish(Id id, const Ending& ending, TimePoint now);
+  /// Once a host is up again: puts back into line what was sent to see whether it is, and hangs, and names it. Its
+  /// transfers are to be broken off: they would hang for as long as a transfer may.
+  std::vector<Id> recallProbes(const std::string& host);
+  [[nodiscard]] bool isRunning(Id id) const;
   void setMultiplexed(const std::string& host) { hosts_.try_emplace(host, retry_).first->second.isMultiplexed = true; }
 
   /// When start may find something that it does not find now, unless something happens before; always after `now`.
@@ -82,6 +87,7 @@ class RequestQueue {
     int running = 0;
     std::uint64_t answers = 0;  ///< whatever they said
     std::optional<Id> probe;
+    std::vector<Id> probes;  ///< sent since it was last up, answered or not
     std::set<Place> waiting;
     std::multimap<TimePoint, Id> delayed;
   };

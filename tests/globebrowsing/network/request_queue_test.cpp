@@ -223,6 +223,30 @@ TEST_F(RequestQueueTest, AProbeThatHangsDoesNotKeepTheNextFromGoing) {
   EXPECT_EQ(startAll(queue).size(), 4U);
 }
 
+TEST_F(RequestQueueTest, ProbesThatHangAreRecalledOnceTheHostIsUp) {
+  RequestQueue queue = make(10, 10);
+  for (RequestQueue::Id id = 1; id <= 6; ++id) {
+    queue.add(id, "a", 1.0);
+  }
+  for (const RequestQueue::Id id : startAll(queue)) {
+    fail(queue, id);
+  }
+  now += retry.maximumPause;
+  const Ids hanging = startAll(queue);
+  ASSERT_EQ(hanging.size(), 1U);
+  EXPECT_THAT(queue.recallProbes("a"), ElementsAre()) << "it is still down";
+  now += retry.maximumPause;
+  const Ids answered = startAll(queue);
+  ASSERT_EQ(answered.size(), 1U);
+  EXPECT_FALSE(queue.finish(answered.front(), {}, now));
+  EXPECT_EQ(queue.recallProbes("a"), hanging);
+  EXPECT_FALSE(queue.isRunning(hanging.front()));
+  EXPECT_THAT(queue.recallProbes("a"), ElementsAre());
+  now += retry.maximumDelay;
+  EXPECT_EQ(startAll(queue).size(), 5U) << "the one that hung as well";
+  EXPECT_EQ(queue.running(), 5U);
+}
+
 TEST_F(RequestQueueTest, RemovesInAnyState) {
   random = 0.9;
   RequestQueue queue = make(2, 2);
