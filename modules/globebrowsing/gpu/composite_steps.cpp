@@ -35,13 +35,19 @@ bool isOnTheWay(const LayerStepPointer& from, const LayerStepPointer& step, cons
 void CompositeStore::takeSteps(KindState& state) {
   const std::vector<Layer*>& enabled = state.layers;
   std::vector<LayerStepPointer> steps;
+  bool comesWithSteps = false;
   for (const Layer* layer : enabled) {
     const auto drawn = std::find_if(state.shown.steps.begin(), state.shown.steps.end(), [layer](const auto& step) {
       return step != nullptr && step->source() == layer->provider().get();
     });
     steps.push_back(drawn != state.shown.steps.end() ? *drawn : layer->step());
+    // A layer that comes back may find composites of its own, of another step.
+    comesWithSteps = comesWithSteps || (drawn == state.shown.steps.end() && layer->provider()->steps() != nullptr);
   }
   state.shown.steps = std::move(steps);
+  if (comesWithSteps) {
+    state.shown.stamp = ++state.lastStamp;
+  }
   // What of the next step was composed before the change will do, and is composed anew after the exchange.
   state.hasNext = state.hasNext && state.next.steps.size() == enabled.size() &&
                   std::equal(enabled.begin(), enabled.end(), state.next.steps.begin(),
@@ -152,6 +158,9 @@ std::uint8_t CompositeStore::nextOwnerLevel(CompositeKind kind, const TileIndex&
   KindState& state = kinds_[static_cast<std::size_t>(kind)];
   if (const auto found = state.nextOwnerLevels.find(index); found != state.nextOwnerLevels.end()) {
     return found->second;
+  }
+  if (state.nextOwnerLevels.size() > mostFacts) {
+    state.nextOwnerLevels.clear();
   }
   const std::optional<TileIndex> parent = tiling_->parent(index);
   const bool own = !parent || anyFiner(kind, state.next, *parent);

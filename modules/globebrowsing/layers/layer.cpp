@@ -249,13 +249,13 @@ void Layer::updateRelief() {
 }
 
 void Layer::noteWaiting() {
-  const std::optional<Error> failure = step_ != nullptr ? step_->tiles()->lastFailure() : std::nullopt;
+  const std::optional<Error> failure = (step_ != nullptr ? step_->tiles() : provider_)->lastFailure();
   std::string text = failure ? failure->message() : std::string();
   if (text == seenFailure_) {
     return;
   }
   if (seenFailure_.empty()) {
-    log::warning("{}: tiles wait: {}", uri(), text);
+    log::warning("{} waits: {}", uri(), text);
   }
   seenFailure_ = std::move(text);
   lastError.put(seenFailure_.empty() && seenError_ != nullptr ? seenError_->message() : seenFailure_);

@@ -127,10 +127,10 @@ Result<std::string> documentOfMaps(const Capabilities& capabilities, const TileS
   const bool isNew = isWmsThree(capabilities.version);
   std::string server(withoutQuery(address) + "?");
   for (const std::string& part : split(address.substr(std::min(address.find('?') + 1, address.size())), "&")) {
-    const std::string name = lowerCase(part.substr(0, part.find('=')));
-    const std::vector<std::string> own{"service", "version", "request", "layers", "styles", "crs",
-                                       "srs",     "bbox",    "width",   "height", "format", "transparent"};
-    server += std::find(own.begin(), own.end(), name) == own.end() ? part + "&" : std::string();
+    const std::string name = part.substr(0, part.find('='));
+    // The value is that of the day on which this is written.
+    const bool isOwn = isGetMapParameter(name) || (followsTime && lowerCase(name) == "time");
+    server += isOwn ? std::string() : part + "&";
   }
   const std::string crs = parameter(isNew ? "crs" : "srs");
   const auto known = MapCrs::of(replaceAll(crs, "%3A", ":"), capabilities.url);

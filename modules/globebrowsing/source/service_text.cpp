@@ -1,6 +1,7 @@
 #include "globebrowsing/source/service_text.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -173,6 +174,13 @@ std::optional<std::string> parameterOf(std::string_view url, std::string_view na
     }
   }
   return std::nullopt;
+}
+
+bool isGetMapParameter(std::string_view name) {
+  static constexpr std::array<std::string_view, 12> own{"service", "version", "request", "layers",
+                                                        "styles",  "crs",     "srs",     "bbox",
+                                                        "width",   "height",  "format",  "transparent"};
+  return std::find(own.begin(), own.end(), lowerCase(name)) != own.end();
 }
 
 std::string withoutQuery(std::string_view url) {

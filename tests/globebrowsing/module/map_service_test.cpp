@@ -7,6 +7,7 @@
 #include "globebrowsing/globe_services.h"
 #include "support/nginx_server.h"
 #include "support/server_process.h"
+#include "support/timed_pyramid.h"
 #include "support/world_raster.h"
 
 namespace meridian::globebrowsing {
@@ -73,6 +74,33 @@ TEST_F(MapServiceTest, TheViewWaitsForAServerThatIsDown) {
   for (int band = 0; band < 3; ++band) {
     EXPECT_NEAR(seen[static_cast<std::size_t>(band)], WorldRaster::value(band, 0.2, 0.1), 4) << band;
   }
+}
+
+TEST_F(MapServiceTest, LayersOfCapabilitiesWaitForAServerThatIsDown) {
+  setModuleProperty("NetworkCacheMode", "off");
+  const int port = freePort();
+  const std::string address = "http://127.0.0.1:" + std::to_string(port);
+  const TimedPyramid pyramid{.days = 2, .levels = 2};
+  std::filesystem::create_directories(folder_ / "days");
+  pyramid.write((folder_ / "days").string(), address);
+  time_ = TimedPyramid::timeOf(1);
+  const std::string path = TimedPyramid::filePath(address);
+  auto& globe =
+      addGlobe({{"ColorLayers",
+                 listOf({fileLayer("Days", path), fileLayer("Pinned", path, {{"Type", "DefaultTileProvider"}})})}});
+  for (const char* name : {"Days", "Pinned"}) {
+    const Layer& layer = *globe.layers().group(LayerGroupId::ColorLayers).find(name);
+    ASSERT_TRUE(framesUntil([&] { return !layer.lastError.get().empty(); })) << name;
+    EXPECT_THAT(layer.lastError.get(), HasSubstr(std::to_string(port)));
+    EXPECT_EQ(layer.status.get(), "opening");
+  }
+  const ServerProcess server(ServerProcess::fileServer((folder_ / "days").string(), port), port);
+  for (const char* name : {"Days", "Pinned"}) {
+    const Layer& layer = *globe.layers().group(LayerGroupId::ColorLayers).find(name);
+    ASSERT_TRUE(framesUntil([&] { return layer.status.get() == "ready" && layer.lastError.get().empty(); }))
+        << name << ": " << layer.status.get() << ", " << layer.lastError.get();
+  }
+  EXPECT_TRUE(settle());
 }
 
 /// Of the module's services, without graphics.
