@@ -19,6 +19,7 @@ namespace meridian::app {
 
 RenderSettings::RenderSettings() : PropertyOwner("RenderEngine", "Render engine") {
   addProperty(antialiasing);
+  addProperty(showAttribution);
   addProperty(verticalSync);
 }
 

@@ -33,6 +33,8 @@ class RenderSettings final : public PropertyOwner {
   RenderSettings();
   IntProperty antialiasing{
       {"Antialiasing", "Antialiasing", "Samples a pixel: 1 is none; others become what the driver has"}, 1, 1, 4};
+  BoolProperty showAttribution{
+      {"ShowAttribution", "Show attribution", "Whether the credits of what is seen stand on the picture"}, true};
   BoolProperty verticalSync{{"VerticalSync", "Vertical sync", "Whether frames wait for the screen"}, true};
 };
 

@@ -28,6 +28,12 @@ class Sink {
   virtual Result<void> finish() = 0;
 };
 
+Result<void> writePicture(const fs::path& file, const graphics::Image& picture) {
+  graphics::PngOptions options;
+  options.metadata = picture.metadata;
+  return graphics::writePng(file, picture.pixels, picture.size, options);
+}
+
 class PictureSink final : public Sink {
  public:
   explicit PictureSink(fs::path file) : file_(std::move(file)) {}
@@ -36,7 +42,7 @@ class PictureSink final : public Sink {
     return {};
   }
   Result<void> finish() override {
-    return last_ ? graphics::writePng(file_, last_->pixels, last_->size) : Result<void>{};
+    return last_ ? writePicture(file_, *last_) : Result<void>{};
   }
 
  private:
@@ -48,7 +54,7 @@ class FolderSink final : public Sink {
  public:
   explicit FolderSink(fs::path folder) : folder_(std::move(folder)) {}
   Result<void> add(graphics::Image picture) override {
-    return graphics::writePng(folder_ / fmt::format("frame_{:06}.png", count_++), picture.pixels, picture.size);
+    return writePicture(folder_ / fmt::format("frame_{:06}.png", count_++), picture);
   }
   Result<void> finish() override { return {}; }
 

@@ -43,6 +43,7 @@ class RenderableGlobe final : public Renderable, public Ground {
   void draw(const FrameContext& frame, std::size_t view) override;
   [[nodiscard]] double boundingSphere() const override { return tiling_->ellipsoid().maximumRadius(); }
   [[nodiscard]] Ground* ground() override { return this; }
+  void addAttributions(std::vector<std::string_view>& list) const override;
   [[nodiscard]] Contents contents() const override;
 
   [[nodiscard]] glm::dvec3 radii() const override { return tiling_->ellipsoid().radii(); }
@@ -85,6 +86,7 @@ class RenderableGlobe final : public Renderable, public Ground {
   Result<void> load(const RenderableRequest& request);
   /// In pixels, of the view that shows it largest.
   [[nodiscard]] double apparentRadius(const FrameContext& frame) const;
+  [[nodiscard]] bool isInView(const FrameContext& frame) const;
   [[nodiscard]] SurfaceSettings settings() const;
   [[nodiscard]] GlobeTiles::Options poolOptions(TexturePoolShares::Share share) const;
   [[nodiscard]] std::unique_ptr<Surface> makeSurface(const GlobeTiles::Options& pool);
@@ -105,6 +107,7 @@ class RenderableGlobe final : public Renderable, public Ground {
   GlobeTiles::Options replacementPool_;
   std::string surfaceError_;  ///< why there can be no surface
   bool drawn_ = false;        ///< in this frame
+  bool inView_ = false;       ///< likewise: drawn, and not beside the picture
   int framesUnseen_ = 0;
 };
 

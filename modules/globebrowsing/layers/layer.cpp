@@ -60,6 +60,8 @@ Layer::Layer(LayerDescription description, LayerGroupId group, const LayerServic
       blendMode({"BlendMode", "Blend mode", "How the layer is put onto those below"}, blendModeNames(),
                 static_cast<int>(description.blendMode)),
       guiDescription({"GuiDescription", "Description", "What the layer shows", true}, description.description),
+      attribution({"Attribution", "Attribution", "Whom the layer's data are to be credited to", true},
+                  description.attribution),
       colour({"Color", "Color", "Of a SolidColor layer"}, description.colour, {0.0, 1.0}),
       gamma({"Gamma", "Gamma", "Exponent of a value's magnitude"}, description.settings.gamma, gammaRange),
       multiplier({"Multiplier", "Multiplier", "Factor, after the exponent"}, description.settings.multiplier,
@@ -78,7 +80,8 @@ Layer::Layer(LayerDescription description, LayerGroupId group, const LayerServic
       provider_(std::move(description.provider)),
       services_(services),
       player_(services.workers, services.streamer),
-      changed_(std::move(changed)) {
+      changed_(std::move(changed)),
+      hasOwnAttribution_(!attribution.get().empty()) {
   addProperties();
   connectProperties();
   attachProvider();
@@ -107,7 +110,8 @@ void Layer::attachProvider() {
 
 void Layer::addProperties() {
   for (Property* property : std::initializer_list<Property*>{&type, &enabled, &opacity, &fade, &blendMode, &reset,
-                                                             &remove, &guiDescription, &status, &lastError}) {
+                                                             &remove, &guiDescription, &attribution, &status,
+                                                             &lastError}) {
     addProperty(*property);
   }
   if (sampling_ == Sampling::SolidColor) {
@@ -196,6 +200,14 @@ void Layer::update(const Time& now) {
   updateRelief();
   if (provider_->steps() != nullptr && provider_->state() == TileProvider::State::Ready) {
     play(now);
+  }
+  updateAttribution();
+}
+
+void Layer::updateAttribution() {
+  const std::string_view found = hasOwnAttribution_ || step_ == nullptr ? attribution.get() : step_->tiles()->attribution();
+  if (found != attribution.get()) {
+    attribution.put(std::string(found));
   }
 }
 

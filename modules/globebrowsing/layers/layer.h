@@ -100,6 +100,7 @@ class Layer final : public PropertyOwner {
   TriggerProperty reset{{"Reset", "Reset", "Opens the data anew and drops the layer's tiles"}};
   TriggerProperty remove{{"Remove", "Remove", "Deletes the layer from its group"}};
   StringProperty guiDescription;
+  StringProperty attribution;
   StringProperty status{{"Status", "Status", "not opened, opening, ready or failed", true}, "not opened"};
   StringProperty lastError{{"LastError", "Last error", "What went wrong last with this layer's data", true}};
   Vec3Property colour;
@@ -123,6 +124,7 @@ class Layer final : public PropertyOwner {
   void play(const Time& now);
   void updateStatus();
   void updateRelief();
+  void updateAttribution();
   void noteWaiting();
 
   LayerGroupId group_;
@@ -138,6 +140,7 @@ class Layer final : public PropertyOwner {
   std::function<void(Layer&, Change)> changed_;
   TileProvider::State seenState_ = TileProvider::State::NotOpened;
   const Error* seenError_ = nullptr;
+  const bool hasOwnAttribution_;
   std::string seenFailure_;  ///< of tiles that wait
   std::string seenProblem_;  ///< of its ReliefStyle
   int framesUntilLook_ = 0;

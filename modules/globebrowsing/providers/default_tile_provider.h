@@ -41,6 +41,9 @@ class DefaultTileProvider final : public TileProvider {
   [[nodiscard]] std::optional<Error> lastFailure() const override {
     return state() == State::Ready ? source_->lastFailure() : std::nullopt;
   }
+  [[nodiscard]] std::string_view attribution() const override {
+    return state() == State::Ready ? source_->attribution() : std::string_view();
+  }
   [[nodiscard]] const RasterDescription& description() const { return description_; }
 
  private:
