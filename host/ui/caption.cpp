@@ -12,9 +12,9 @@
 namespace meridian::ui {
 namespace {
 
-constexpr float fontPixels = 13.0F;   // of ImGui's own font
-constexpr int pictureRows = 1080;     // up to twice as many, the font is drawn as it is
-constexpr float margin = 3.0F;        // in pixels of that font
+constexpr float fontPixels = 13.0F;  // of ImGui's own font
+constexpr int pictureRows = 1080;    // up to twice as many, the font is drawn as it is
+constexpr float margin = 3.0F;       // in pixels of that font
 constexpr ImU32 ground = IM_COL32(0, 0, 0, 110);
 constexpr ImU32 letters = IM_COL32(235, 235, 235, 230);
 
