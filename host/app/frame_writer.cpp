@@ -41,9 +41,7 @@ class PictureSink final : public Sink {
     last_ = std::move(picture);
     return {};
   }
-  Result<void> finish() override {
-    return last_ ? writePicture(file_, *last_) : Result<void>{};
-  }
+  Result<void> finish() override { return last_ ? writePicture(file_, *last_) : Result<void>{}; }
 
  private:
   fs::path file_;

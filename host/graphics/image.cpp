@@ -158,7 +158,8 @@ Result<void> writePng(const std::filesystem::path& file, std::span<const std::ui
   std::vector<png_text> texts;
   for (auto& [key, value] : metadata) {
     png_text text{};
-    const bool isAscii = std::all_of(value.begin(), value.end(), [](char c) { return static_cast<signed char>(c) > 0; });
+    const bool isAscii =
+        std::all_of(value.begin(), value.end(), [](char c) { return static_cast<signed char>(c) > 0; });
     text.compression = isAscii ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
     text.key = const_cast<png_charp>(key.c_str());
     text.text = value.data();
