@@ -286,7 +286,7 @@ void RenderableGlobe::addAttributions(std::vector<std::string_view>& list) const
   }
 }
 
-Result<void> RenderableGlobe::addLayer(const std::string& group, const ProviderRequest& request) {
+Result<void> RenderableGlobe::addLayer(const std::string& group, const ProviderRequest& request, bool isUsers) {
   const std::optional<NamedGroup> named = layerGroupFromName(group);
   const Value* identifier = request.table.find("Identifier");
   const bool isTaken = named && identifier != nullptr && identifier->string() != nullptr &&
@@ -298,6 +298,9 @@ Result<void> RenderableGlobe::addLayer(const std::string& group, const ProviderR
   const Result<Layer*> added = layers_.addLayer(group, request);
   if (!added && !named) {
     return tl::make_unexpected(added.error());
+  }
+  if (added && isUsers) {
+    (*added)->setUsers();
   }
   if (!added) {
     log::error("{}", added.error().message());

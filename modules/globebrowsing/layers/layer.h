@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "globebrowsing/layers/blend.h"
+#include "globebrowsing/layers/data_properties.h"
 #include "globebrowsing/layers/layer_description.h"
 #include "globebrowsing/layers/layer_group.h"
 #include "globebrowsing/layers/step_player.h"
@@ -41,6 +42,12 @@ class Layer final : public PropertyOwner {
         std::function<void(Layer&, Change)> changed);
   ~Layer() override;
 
+  /// The table that makes the layer as it is now: its own, with what was set since, and paths that hold anywhere.
+  [[nodiscard]] Value table() const;
+  /// Whether a user added it, rather than an asset.
+  [[nodiscard]] bool isUsers() const { return isUsers_; }
+  void setUsers() { isUsers_ = true; }
+
   /// What its provider is made from.
   [[nodiscard]] const ProviderRequest& request() const { return request_; }
   [[nodiscard]] LayerGroupId group() const { return group_; }
@@ -64,7 +71,8 @@ class Layer final : public PropertyOwner {
   [[nodiscard]] glm::dvec3 ownColour() const { return relief() != nullptr ? relief()->colour : colour.get(); }
   [[nodiscard]] LayerStructure structure() const { return {group_, sampling_, blend(), adjustment()}; }
 
-  /// Whether its tiles are shown as they are: at opacity 1 nothing mixes them with what is below or changes their colours.
+  /// Whether its tiles are shown as they are: at opacity 1 nothing mixes them with what is below or changes their
+  /// colours.
   [[nodiscard]] bool showsTilesUnchanged() const {
     return sampling_ == Sampling::Tile && blend() == BlendMode::Normal && adjustment() == Adjustment::None &&
            settings().isIdentity();
@@ -120,7 +128,9 @@ class Layer final : public PropertyOwner {
   void addProperties();
   void connectProperties();
   void attachProvider();
-  void restart();
+  void detachProvider();
+  /// Makes the provider anew from such a request, which becomes the layer's; on an error it keeps what it has.
+  void restart(ProviderRequest request);
   void play(const Time& now);
   void updateStatus();
   void updateRelief();
@@ -133,6 +143,8 @@ class Layer final : public PropertyOwner {
   bool hadZIndex_;
   Sampling sampling_;
   ProviderRequest request_;
+  bool wantsRestart_ = false;  ///< not at once: whoever sets many properties holds those of the provider
+  DataProperties data_;
   std::shared_ptr<TileProvider> provider_;
   LayerServices services_;
   StepPlayer player_;
@@ -145,6 +157,7 @@ class Layer final : public PropertyOwner {
   std::string seenProblem_;  ///< of its ReliefStyle
   int framesUntilLook_ = 0;
   bool wantsRemoval_ = false;
+  bool isUsers_ = false;
   bool quiet_ = false;  ///< SetDefault tells once, not three times
 };
 

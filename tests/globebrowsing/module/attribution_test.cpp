@@ -22,11 +22,11 @@ class AttributionTest : public GlobeTest {
 };
 
 TEST_F(AttributionTest, NamesEachOfTheLayersThatAreSeenOnce) {
-  RenderableGlobe& globe = addGlobe(
-      {{"ColorLayers", listOf({solidLayer("A", {1, 0, 0}, {{"Attribution", "Me"}}),
-                               solidLayer("B", {0, 1, 0}, {{"Attribution", "You\n and <a href='x'>them</a>"}}),
-                               solidLayer("C", {0, 0, 1}, {{"Attribution", "Others"}, {"Enabled", false}})})},
-       {"Overlays", listOf({solidLayer("D", {1, 1, 1}, {{"Attribution", "Me"}})})}});
+  RenderableGlobe& globe =
+      addGlobe({{"ColorLayers", listOf({solidLayer("A", {1, 0, 0}, {{"Attribution", "Me"}}),
+                                        solidLayer("B", {0, 1, 0}, {{"Attribution", "You\n and <a href='x'>them</a>"}}),
+                                        solidLayer("C", {0, 0, 1}, {{"Attribution", "Others"}, {"Enabled", false}})})},
+                {"Overlays", listOf({solidLayer("D", {1, 1, 1}, {{"Attribution", "Me"}})})}});
   EXPECT_THAT(shown(), ElementsAre("Me", "You and them"));
   LayerGroup& colours = globe.layers().group(LayerGroupId::ColorLayers);
   colours.find("B")->opacity.put(0.0);
