@@ -70,6 +70,6 @@ void main() {
     vec4 result = part.background;
     vec4 water = vec4(0.0);
 #{body}
-    // What the base starts from is opaque, and so it stays: its alpha is free for what the water reflects.
-    colour = part.background.a > 0.0 ? vec4(result.rgb, water.a) : result;
+    // What the base starts from is opaque, and so it stays: its alpha is free for what of it no water covers.
+    colour = part.background.a > 0.0 ? vec4(result.rgb, 1.0 - water.a) : result;
 }

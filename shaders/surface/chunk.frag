@@ -24,9 +24,9 @@ void main() {
     // Without any composite the grey that composition starts from.
     float base = baseNormalsLayers.x;
 #if FADE == FADE_BASE
-    vec4 ground = base < 0.0 ? vec4(vec3(0.3), 0.0) : mixed(baseAndNormals.xy, base);
+    vec4 ground = base < 0.0 ? vec4(vec3(0.3), 1.0) : mixed(baseAndNormals.xy, base);
 #else
-    vec4 ground = base < 0.0 ? vec4(vec3(0.3), 0.0) : texture(composites, vec3(baseAndNormals.xy, base));
+    vec4 ground = base < 0.0 ? vec4(vec3(0.3), 1.0) : texture(composites, vec3(baseAndNormals.xy, base));
 #endif
     vec3 lit = ground.rgb;
 #if SHADING
@@ -39,7 +39,7 @@ void main() {
     lit *= min(view.ambient + max(sun, 0.0), 1.0);
 #if WATER
     float glint = view.waterReflectance * sunGlint(normalize(vertical), -normalize(fromEye), view.lightDirection);
-    lit = mix(lit, withLight(lit, glint), ground.a);
+    lit = mix(withLight(lit, glint), lit, ground.a);
 #endif
 #if NIGHT
     if (nightOverlayLayers.x >= 0.0) {

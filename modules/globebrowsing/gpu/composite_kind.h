@@ -10,7 +10,7 @@
 namespace meridian::globebrowsing {
 
 /// What a fragment gets composed: one array layer of the composites each. Base holds the colour layers and, as alpha,
-/// what the water masks reflect.
+/// 1 less what the water masks reflect.
 enum class CompositeKind : std::uint8_t { Base, Night, Overlay };
 inline constexpr std::size_t compositeKindCount = 3;
 inline constexpr std::array<CompositeKind, compositeKindCount> allCompositeKinds{

@@ -92,7 +92,7 @@ class CompositeStore {
 
   /// Whether any enabled layer is of that kind; Base always is in use.
   [[nodiscard]] bool inUse(CompositeKind kind) const;
-  /// Whether the base's alpha is what water reflects, and not 0 everywhere.
+  /// Whether the base's alpha is less than 1 where there is water.
   [[nodiscard]] bool hasWater() const { return !layers_.group(LayerGroupId::WaterMasks).enabledLayers().empty(); }
   /// The kind of which two composites should be mixed in this frame.
   [[nodiscard]] std::optional<CompositeKind> fading() const { return fading_; }

@@ -68,7 +68,7 @@ void HeightComposition::beginFrame() {
   if (finer_.size() > mostFiner) {
     finer_.clear();
   }
-  opening_.update(heights);
+  opening_.update(heights.enabledLayers());
 }
 
 bool HeightComposition::gather(const TileIndex& index, double priority) {

@@ -71,8 +71,7 @@ class Layer final : public PropertyOwner {
   [[nodiscard]] glm::dvec3 ownColour() const { return relief() != nullptr ? relief()->colour : colour.get(); }
   [[nodiscard]] LayerStructure structure() const { return {group_, sampling_, blend(), adjustment()}; }
 
-  /// Whether its tiles are shown as they are: at opacity 1 nothing mixes them with what is below or changes their
-  /// colours.
+  /// Whether at opacity 1 its tiles are shown as they are: nothing mixes them with what is below or changes colours.
   [[nodiscard]] bool showsTilesUnchanged() const {
     return sampling_ == Sampling::Tile && blend() == BlendMode::Normal && adjustment() == Adjustment::None &&
            settings().isIdentity();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -26,14 +27,33 @@ double thinningLimit(int thinned) {
   return limits[static_cast<std::size_t>(thinned)];
 }
 
+/// 2^exponent; what std::ldexp does in a call, and tiles are asked for their places by the thousand.
+constexpr double powerOfTwo(int exponent) {
+  constexpr int bias = 1023;
+  constexpr int mantissaBits = 52;
+  return std::bit_cast<double>(static_cast<std::uint64_t>(bias + exponent) << mantissaBits);
+}
+
+/// The colatitude of the edge nearer the equator, as a fraction of pi, of the ancestor at that level of a row.
+double equatorwardEdge(int level, std::uint32_t fromNearerPole, int ancestor) {
+  return static_cast<double>((fromNearerPole >> (level - ancestor)) + 1) * powerOfTwo(-ancestor);
+}
+
+std::uint32_t rowsFromNearerPole(int level, std::uint32_t row) {
+  return std::min(row, (std::uint32_t{1} << level) - 1 - row);
+}
+
 /// How often rows of that level were not split in longitude on the way down to this one.
 int thinned(int level, std::uint32_t row) {
-  const std::uint32_t fromNearerPole = std::min(row, (std::uint32_t{1} << level) - 1 - row);
+  const std::uint32_t fromNearerPole = rowsFromNearerPole(level, row);
+  // The edge comes no nearer to the equator from ancestor to descendant, so in the middle latitudes the last one tells.
+  if (level < 2 || equatorwardEdge(level, fromNearerPole, level - 1) >= thinningLimit(0)) {
+    return 0;
+  }
   int count = 0;
   // A root reaches over the equator and always splits into four.
   for (int ancestor = 1; ancestor < level; ++ancestor) {
-    const std::uint32_t edge = (fromNearerPole >> (level - ancestor)) + 1;
-    if (std::ldexp(static_cast<double>(edge), -ancestor) < thinningLimit(count)) {
+    if (equatorwardEdge(level, fromNearerPole, ancestor) < thinningLimit(count)) {
       ++count;
     }
   }
@@ -45,8 +65,8 @@ int columnsExponent(int level, std::uint32_t row) {
 }
 
 bool splitsInLongitude(int level, std::uint32_t row) {
-  // Both rows of children have the same ancestors.
-  return columnsExponent(level + 1, 2 * row) > columnsExponent(level, row);
+  return level == 0 ||
+         equatorwardEdge(level, rowsFromNearerPole(level, row), level) >= thinningLimit(thinned(level, row));
 }
 
 }  // namespace
@@ -128,8 +148,8 @@ GeodeticPosition GeodeticTiling::geodetic(const TileIndex& index, const glm::dve
   // Fractions of the whole way round and from pole to pole. At nodes (dyadic uv) they are exact, so every tile that
   // shares a node takes the same angles from them; they are brought into range before they become angles.
   double around =
-      std::ldexp(static_cast<double>(index.x) + uv.x, -columnsExponent(index.level, index.y) - 1) + 0.5 * index.root;
-  double down = std::ldexp(static_cast<double>(index.y) + uv.y, -index.level);
+      (static_cast<double>(index.x) + uv.x) * powerOfTwo(-columnsExponent(index.level, index.y) - 1) + 0.5 * index.root;
+  double down = (static_cast<double>(index.y) + uv.y) * powerOfTwo(-index.level);
   if (down < 0.0 || down > 1.0) {
     down = down < 0.0 ? -down : 2.0 - down;
     around += 0.5;

@@ -84,7 +84,13 @@ class ComposerTest : public GpuTest {
     }
   }
   CompositionPart part(const Layer* layer, const ColourTile* tile, UnitSquareTransform transform = {}) {
-    return {layer, tile, {++stream_, {}}, transform, static_cast<float>(layer->effectiveOpacity())};
+    CompositionPart part;
+    part.layer = layer;
+    part.tile = tile;
+    part.key = {++stream_, {}};
+    part.transform = transform;
+    part.opacity = static_cast<float>(layer->effectiveOpacity());
+    return part;
   }
 
   std::mt19937 random_{2016};
@@ -165,7 +171,7 @@ TEST_F(ComposerTest, ComposesWhatTheReferenceComputes) {
           if (!expected) {
             continue;
           }
-          expected->w = 0.0;  // of the water, of which there is none
+          expected->w = 1.0;  // there is no water
           const glm::dvec4 clamped = glm::clamp(*expected, 0.0, 1.0);
           const glm::dvec4 pixel = texel(found, side, x, y);
           for (int i = 0; i < 4; ++i) {
@@ -176,6 +182,33 @@ TEST_F(ComposerTest, ComposesWhatTheReferenceComputes) {
           }
         }
       }
+    }
+  }
+}
+
+TEST_F(ComposerTest, ALayerThatHidesAllOthersIsWhatBlendingItGives) {
+  Layer* lower = addTileLayer();
+  Layer* upper = addTileLayer();
+  useStructure();
+  const auto lowerTile = randomTile();
+  ColourPixels opaque = randomTile()->pixels();
+  for (std::size_t alpha = 3; alpha < opaque.rgba.size(); alpha += 4) {
+    opaque.rgba[alpha] = 255;
+  }
+  const ColourTile upperTile(std::move(opaque));
+  ASSERT_TRUE(upperTile.isOpaque());
+  std::vector<CompositionPart> parts{part(lower, lowerTile.get()), part(upper, &upperTile)};
+  const double asOne = composer_->estimatedMilliseconds(parts);
+  ASSERT_TRUE(compose(1, parts));
+  // So little less than 1 that no byte shows it, but then it is blended.
+  parts.back().opacity = 0.9999F;
+  EXPECT_LT(asOne, composer_->estimatedMilliseconds(parts));
+  ASSERT_TRUE(compose(2, parts));
+  for (int level = 0; level < Composer::levelCount; ++level) {
+    const std::vector<std::uint8_t> whole = read(1, level);
+    const std::vector<std::uint8_t> blended = read(2, level);
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      ASSERT_NEAR(int{whole[i]}, int{blended[i]}, 1) << "level " << level << ", byte " << i;
     }
   }
 }

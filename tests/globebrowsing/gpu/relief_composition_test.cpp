@@ -208,6 +208,7 @@ TEST_F(ReliefCompositionTest, TheLoopingProgramDrawsThemToo) {
     parts[i].layer = manager_.group(LayerGroupId::Overlays).enabledLayers()[i];
     parts[i].relief = tile_.get();
     parts[i].key = {1, index_};
+    parts[i].opacity = static_cast<float>(parts[i].layer->effectiveOpacity());
   }
   composer_->beginFrame(99);
   ASSERT_TRUE(composer_->ready(CompositeKind::Overlay));

@@ -66,8 +66,8 @@ TEST_F(LayerLoadingTest, ATogglesFirstChunkIsTheMiddlesAndSoonThere) {
   EXPECT_GE(composed - start, 2U);
   EXPECT_GE(framesUntilMiddle, 1);
   EXPECT_LE(framesUntilMiddle, 2);
-  // A composite of nine layers takes more than the budget of 2 ms on a software renderer, so there is one a frame.
-  const double each = store.composer().estimatedMilliseconds(9);
+  // The layer hides those below, so its composites take the least.
+  const double each = store.composer().estimatedMilliseconds({});
   EXPECT_LE(static_cast<double>(most - 1) * each, 2.0) << most << " in one frame";
 }
 

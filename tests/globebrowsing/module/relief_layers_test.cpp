@@ -37,6 +37,8 @@ TEST_F(ReliefLayersTest, ARampFollowsItsPropertiesAndTheHeightLayers) {
                                          fileLayer("B", level("b.tif", 1000.0), {{"Enabled", false}})})}});
   ASSERT_TRUE(settle());
   EXPECT_THAT(centre(), colour(100, 50, 0));
+  frame();
+  graphics_->programs().waitAll();  // those that fading will need, too
   const auto built = statistics_.programs.built.load();
   Layer& ramp = *globe.layers().group(LayerGroupId::ColorLayers).find("ColorRelief");
   LayerGroup& heights = globe.layers().group(LayerGroupId::HeightLayers);
