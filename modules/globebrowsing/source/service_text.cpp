@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -54,6 +55,25 @@ std::vector<std::string> split(std::string_view text, std::string_view separator
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return parts;
+}
+
+std::string creditText(std::string_view text) {
+  std::string plain;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const bool mayBeTag = text[at] == '<' && at + 1 < text.size() &&
+                          (text[at + 1] == '/' || std::isalpha(static_cast<unsigned char>(text[at + 1])) != 0);
+    if (const std::size_t end = mayBeTag ? text.find('>', at) : std::string_view::npos; end != std::string_view::npos) {
+      plain += ' ';
+      at = end;
+    } else {
+      plain += text[at];
+    }
+  }
+  std::string line;
+  for (const std::string& word : split(plain, " \t\r\n")) {
+    line.append(line.empty() ? "" : " ").append(word);
+  }
+  return line;
 }
 
 std::string replaceAll(std::string text, std::string_view from, std::string_view to) {

@@ -27,6 +27,9 @@ namespace meridian::globebrowsing {
 /// At most ten decimals, no exponent (servers do not read it), no trailing zeros.
 [[nodiscard]] std::string decimal(double value);
 
+/// A credit on one line: white space in it as single blanks, tags of HTML left out.
+[[nodiscard]] std::string creditText(std::string_view text);
+
 /// Everything but unreserved characters (RFC 3986, section 2.3) and those of `kept` as %XX.
 [[nodiscard]] std::string percentEncoded(std::string_view text, std::string_view kept = {});
 

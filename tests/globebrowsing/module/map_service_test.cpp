@@ -109,8 +109,8 @@ class CapabilitiesLoaderTest : public testing::Test {
   CapabilitiesLoaderTest() {
     std::string name = (std::filesystem::temp_directory_path() / "meridian-capabilities-XXXXXX").string();
     folder_ = ::mkdtemp(name.data());
-    std::ofstream(folder_ / "tilemapresource.xml")
-        << R"(<TileMap version="1.0.0"><Title>The world</Title><SRS>EPSG:4326</SRS>
+    std::ofstream(folder_ / "tilemapresource.xml") << R"(<TileMap version="1.0.0"><Title>The world</Title>
+              <Attribution><Title>The makers</Title></Attribution><SRS>EPSG:4326</SRS>
               <BoundingBox minx="-180" miny="-90" maxx="180" maxy="90"/><Origin x="-180" y="-90"/>
               <TileFormat width="256" height="256" mime-type="image/png" extension="png"/>
               <TileSets profile="global-geodetic"><TileSet href="0" units-per-pixel="0.703125" order="0"/>
@@ -151,6 +151,13 @@ TEST_F(CapabilitiesLoaderTest, AServerOffersWhatAnAssetCanName) {
   EXPECT_EQ(offer->front().name, "The world");
   EXPECT_THAT(offer->front().url, HasSubstr("<GDAL_WMS>"));
   EXPECT_THAT(offer->front().url, HasSubstr(address));
+  EXPECT_EQ(offer->front().attribution, "The makers");
+  ASSERT_TRUE(offer->front().extent);
+  EXPECT_NEAR(offer->front().extent->west, -std::numbers::pi, 1e-9);
+  ASSERT_EQ(offer->front().styles.size(), 1U);
+  const Value& table = offer->front().styles.front().table;
+  EXPECT_EQ(*table.find("FilePath"), Value(offer->front().url));
+  EXPECT_EQ(*table.find("Attribution"), Value("The makers"));
 }
 
 TEST_F(CapabilitiesLoaderTest, CapabilitiesMayLieInAFile) {
