@@ -80,6 +80,7 @@ Result<std::unique_ptr<SettledGlobe>> SettledGlobe::create(const std::string& pl
 
 SettledGlobe::~SettledGlobe() {
   if (application_) {
+    static_cast<void>(context_->makeCurrent());
     application_->unload();
   }
 }
@@ -103,6 +104,7 @@ bool SettledGlobe::isPreparing() const {
 }
 
 double SettledGlobe::frame() {
+  static_cast<void>(context_->makeCurrent());  // there may be other globes
   const auto start = Clock::now();
   renderer_->beginFrame();
   const app::SceneRenderer::Moment moment{application_->clock().time(), 0.0, 0.0, frames_++};
@@ -120,6 +122,7 @@ void SettledGlobe::blit() {
 }
 
 std::vector<std::uint8_t> SettledGlobe::picture() const {
+  static_cast<void>(context_->makeCurrent());
   std::vector<std::uint8_t> rgba(std::size_t{4} * static_cast<std::size_t>(size_.x) *
                                  static_cast<std::size_t>(size_.y));
   glGetTextureImage(shown_.id(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(rgba.size()), rgba.data());

@@ -46,7 +46,6 @@ struct TimedPyramid {
   static std::string filePath(const std::string& address) { return "WMTS:" + address + "/wmts.xml,layer=Days"; }
 
   void write(const std::filesystem::path& root, const std::string& address) const {
-    GDALAllRegister();
     std::filesystem::create_directories(root / "days");
     for (int day = 0; day < days; ++day) {
       const std::filesystem::path folder = root / "days" / nameOf(day);
@@ -57,6 +56,28 @@ struct TimedPyramid {
       }
     }
     std::ofstream(root / "wmts.xml") << capabilities(address);
+  }
+
+  /// A tile of one colour and the grain.
+  static void writeTile(const std::filesystem::path& file, const std::array<int, 3>& colour) {
+    GDALAllRegister();
+    std::vector<std::uint8_t> pixels(std::size_t{3} * tileSize * tileSize);
+    std::uint32_t random = 1;
+    for (std::size_t i = 0; i < pixels.size() / 3; ++i) {
+      random = random * 1664525U + 1013904223U;
+      const int bump = static_cast<int>((random >> 16) % (2 * grain + 1)) - grain;
+      for (std::size_t band = 0; band < 3; ++band) {
+        pixels[band * pixels.size() / 3 + i] = static_cast<std::uint8_t>(std::clamp(colour[band] + bump, 0, 255));
+      }
+    }
+    GDALDatasetUniquePtr tile(
+        GetGDALDriverManager()->GetDriverByName("MEM")->Create("", tileSize, tileSize, 3, GDT_Byte, nullptr));
+    if (tile->RasterIO(GF_Write, 0, 0, tileSize, tileSize, pixels.data(), tileSize, tileSize, GDT_Byte, 3, nullptr, 0,
+                       0, 0, nullptr) != CE_None) {
+      throw std::runtime_error(CPLGetLastErrorMsg());
+    }
+    GDALDatasetUniquePtr(GetGDALDriverManager()->GetDriverByName("JPEG")->CreateCopy(file.c_str(), tile.get(), FALSE,
+                                                                                     nullptr, nullptr, nullptr));
   }
 
  private:
@@ -101,26 +122,6 @@ struct TimedPyramid {
         }
       }
     }
-  }
-
-  static void writeTile(const std::filesystem::path& file, const std::array<int, 3>& colour) {
-    std::vector<std::uint8_t> pixels(std::size_t{3} * tileSize * tileSize);
-    std::uint32_t random = 1;
-    for (std::size_t i = 0; i < pixels.size() / 3; ++i) {
-      random = random * 1664525U + 1013904223U;
-      const int bump = static_cast<int>((random >> 16) % (2 * grain + 1)) - grain;
-      for (std::size_t band = 0; band < 3; ++band) {
-        pixels[band * pixels.size() / 3 + i] = static_cast<std::uint8_t>(std::clamp(colour[band] + bump, 0, 255));
-      }
-    }
-    GDALDatasetUniquePtr tile(
-        GetGDALDriverManager()->GetDriverByName("MEM")->Create("", tileSize, tileSize, 3, GDT_Byte, nullptr));
-    if (tile->RasterIO(GF_Write, 0, 0, tileSize, tileSize, pixels.data(), tileSize, tileSize, GDT_Byte, 3, nullptr, 0,
-                       0, 0, nullptr) != CE_None) {
-      throw std::runtime_error(CPLGetLastErrorMsg());
-    }
-    GDALDatasetUniquePtr(GetGDALDriverManager()->GetDriverByName("JPEG")->CreateCopy(file.c_str(), tile.get(), FALSE,
-                                                                                     nullptr, nullptr, nullptr));
   }
 };
 

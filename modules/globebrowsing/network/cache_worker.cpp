@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <pthread.h>
+
 namespace meridian::globebrowsing {
 
 namespace {
@@ -78,6 +80,7 @@ void CacheWorker::drain() {
 }
 
 void CacheWorker::run() {
+  pthread_setname_np(pthread_self(), "network-cache");
   std::unique_lock lock(mutex_);
   for (;;) {
     added_.wait(lock, [&] { return stopping_ || !reads_.empty() || !writes_.empty(); });

@@ -137,7 +137,8 @@ std::unique_ptr<PendingFetch> HttpFetcher::Engine::fetch(FetchRequest request, D
 }
 
 void HttpFetcher::Engine::accept(const Fetched& answer) {
-  if (answer.origin == nullptr || answer.body == nullptr || cacheMode_ != CacheMode::ReadWrite ||
+  if (answer.origin == nullptr || answer.body == nullptr || options_.cache.folder.empty() ||
+      cacheMode_ != CacheMode::ReadWrite ||
       !isStorable(answer.origin->status, answer.origin->facts.fields) || answer.origin->isAccepted.exchange(true)) {
     return;
   }
@@ -166,6 +167,7 @@ void HttpFetcher::Engine::setCacheSize(std::uint64_t bytes) {
 }
 
 void HttpFetcher::Engine::run() {
+  pthread_setname_np(pthread_self(), "network");
   // curl writes to connections that others have closed; told to use no signals it leaves this one to us.
   sigset_t pipe;
   sigemptyset(&pipe);
@@ -184,7 +186,7 @@ void HttpFetcher::Engine::run() {
     if (const auto wake = queue_.wakeAt(now)) {
       timeout = std::min(timeout, std::chrono::ceil<std::chrono::milliseconds>(*wake - now));
     }
-    transfers_.run(timeout, endings);
+    transfers_.run(mailbox_->maySleep() ? timeout : std::chrono::milliseconds(0), endings);
     for (TransferEnding& ending : endings) {
       ended(std::move(ending));
     }

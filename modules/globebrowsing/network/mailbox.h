@@ -22,7 +22,8 @@ class Mailbox {
       return;
     }
     tasks_.push_back(std::move(task));
-    if (urgent && !std::exchange(isWoken_, true)) {
+    hasUrgent_ = hasUrgent_ || urgent;
+    if (urgent && std::exchange(isAsleep_, false)) {
       wake_();
     }
   }
@@ -30,8 +31,17 @@ class Mailbox {
   /// Everything posted since the last call.
   [[nodiscard]] std::vector<Task> take() {
     const std::lock_guard lock(mutex_);
-    isWoken_ = false;
+    isAsleep_ = false;
+    hasUrgent_ = false;
     return std::exchange(tasks_, {});
+  }
+
+  /// To be called before going to sleep: false when there is something urgent to be taken first. A thread that is awake
+  /// is not woken, which is most of the cost of a post.
+  [[nodiscard]] bool maySleep() {
+    const std::lock_guard lock(mutex_);
+    isAsleep_ = !hasUrgent_;
+    return isAsleep_;
   }
 
   void close() {
@@ -45,7 +55,8 @@ class Mailbox {
   std::mutex mutex_;
   std::function<void()> wake_;
   std::vector<Task> tasks_;
-  bool isWoken_ = false;
+  bool hasUrgent_ = false;  ///< since the last take()
+  bool isAsleep_ = false;
   bool isClosed_ = false;
 };
 

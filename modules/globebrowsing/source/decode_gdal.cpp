@@ -77,7 +77,7 @@ class MemoryDataset {
 
 /// A palette's entries in place of their numbers.
 void applyPalette(const GDALColorTable& palette, DecodedImage& image) {
-  std::vector<std::uint8_t>& rgba = image.tile.rgba;
+  ByteVector& rgba = image.tile.rgba;
   for (std::size_t at = 0; at < rgba.size(); at += 4) {
     const GDALColorEntry* entry = rgba[at] < palette.GetColorEntryCount() ? palette.GetColorEntry(rgba[at]) : nullptr;
     const auto part = [&](short value) { return static_cast<std::uint8_t>(std::clamp<int>(value, 0, 255)); };
@@ -103,7 +103,7 @@ Result<DecodedImage> decodeByGdal(std::span<const std::uint8_t> bytes, const std
   const int height = (*dataset)->GetRasterYSize();
   const int bands = (*dataset)->GetRasterCount();
   const bool isWide = (*dataset)->GetRasterBand(1)->GetRasterDataType() == GDT_UInt16;
-  DecodedImage image{{width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height, 255)},
+  DecodedImage image{{width, height, ByteVector(std::size_t{4} * width * height, 255)},
                      bands == 2 || bands >= 4};
   // Where each of R, G, B, A comes from: grey serves all three.
   const bool isColour = bands >= 3;

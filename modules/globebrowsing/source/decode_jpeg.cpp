@@ -11,13 +11,19 @@ namespace meridian::globebrowsing {
 
 namespace {
 
-/// libjpeg's state, with what its callbacks need. They leave by longjmp, so nothing here may need a destructor.
+/// libjpeg's state, with what its callbacks need, for one picture after another: to make it takes a fiftieth of a tile's
+/// time. Callbacks leave by longjmp, so nothing between may need a destructor.
 struct Decompression {
-  jpeg_decompress_struct info;
-  jpeg_error_mgr errors;
-  jpeg_progress_mgr progress;
-  std::jmp_buf leave;
-  char message[JMSG_LENGTH_MAX];
+  jpeg_decompress_struct info{};
+  jpeg_error_mgr errors{};
+  jpeg_progress_mgr progress{};
+  std::jmp_buf leave{};
+  char message[JMSG_LENGTH_MAX]{};
+
+  Decompression() = default;
+  Decompression(const Decompression&) = delete;
+  Decompression& operator=(const Decompression&) = delete;
+  ~Decompression() { jpeg_destroy_decompress(&info); }
 };
 
 [[noreturn]] void leave(j_common_ptr info) {
@@ -43,8 +49,10 @@ void watch(j_common_ptr info) {
 }
 
 void begin(Decompression& state, std::span<const std::uint8_t> bytes) {
-  jpeg_create_decompress(&state.info);
-  state.info.client_data = &state;
+  if (state.info.mem == nullptr) {
+    jpeg_create_decompress(&state.info);
+    state.info.client_data = &state;
+  }
   jpeg_mem_src(&state.info, bytes.data(), static_cast<unsigned long>(bytes.size()));
   jpeg_read_header(&state.info, TRUE);
 }
@@ -83,11 +91,11 @@ bool readPixels(Decompression& state, std::uint8_t* rgba) {
 }  // namespace
 
 Result<DecodedImage> decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& where) {
-  Decompression state{};
+  thread_local Decompression state;
   prepare(state);
   DecodedImage image;
   const auto failed = [&]() -> Result<DecodedImage> {
-    jpeg_destroy_decompress(&state.info);
+    jpeg_abort_decompress(&state.info);
     return failure(std::string("the JPEG is damaged (") + static_cast<const char*>(state.message) + ")", where);
   };
   if (!readHeader(state, bytes)) {
@@ -96,11 +104,11 @@ Result<DecodedImage> decodeJpeg(std::span<const std::uint8_t> bytes, const std::
   const auto width = static_cast<std::int64_t>(state.info.image_width);
   const auto height = static_cast<std::int64_t>(state.info.image_height);
   if (auto good = checkTileSize(width, height, where); !good) {
-    jpeg_destroy_decompress(&state.info);
+    jpeg_abort_decompress(&state.info);
     return tl::make_unexpected(std::move(good.error()));
   }
   if (state.info.num_components == 4) {  // inks: rare, and GDAL knows their variants
-    jpeg_destroy_decompress(&state.info);
+    jpeg_abort_decompress(&state.info);
     return decodeByGdal(bytes, where);
   }
   image.tile.width = static_cast<int>(width);
@@ -109,7 +117,7 @@ Result<DecodedImage> decodeJpeg(std::span<const std::uint8_t> bytes, const std::
   if (!readPixels(state, image.tile.rgba.data())) {
     return failed();
   }
-  jpeg_destroy_decompress(&state.info);
+  jpeg_abort_decompress(&state.info);
   return image;
 }
 

@@ -88,7 +88,7 @@ Result<DecodedImage> decodeLerc(std::span<const std::uint8_t> bytes, const std::
   const std::size_t pixels = blob->isThere.size();
   const auto depth = static_cast<std::size_t>(blob->depth);
   const std::size_t channels = depth > 1 ? depth : static_cast<std::size_t>(blob->bands);
-  DecodedImage image{{blob->width, blob->height, std::vector<std::uint8_t>(pixels * 4, 255)},
+  DecodedImage image{{blob->width, blob->height, ByteVector(pixels * 4, 255)},
                      blob->hasMask || channels == 2 || channels == 4};
   const auto value = [&](std::size_t pixel, std::size_t channel) {
     const double stored = depth > 1 ? blob->values[pixel * depth + channel] : blob->values[channel * pixels + pixel];

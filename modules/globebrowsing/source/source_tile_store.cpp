@@ -43,7 +43,7 @@ Result<SourceTilePointer> checked(SourceTilePointer tile, PixelKind kind, const 
     return tile;
   }
   const auto pixels = static_cast<std::size_t>(tile->width) * static_cast<std::size_t>(tile->height);
-  const std::size_t given = kind == PixelKind::Colours ? tile->colours.size() : tile->heights.size();
+  const std::size_t given = kind == PixelKind::Colours ? tile->rgba.size() / sizeof(Rgba) : tile->heights.size();
   if (tile->width != matrix.tileWidth || tile->height != matrix.tileHeight || given != pixels) {
     return failure(fmt::format("the tile is of {} x {} pixels instead of {} x {}", tile->width, tile->height,
                                matrix.tileWidth, matrix.tileHeight),

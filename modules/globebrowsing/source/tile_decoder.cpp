@@ -4,7 +4,6 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <string_view>
@@ -76,7 +75,7 @@ void makeNoDataTransparent(DecodedImage& image, const TileService& service) {
     return;
   }
   const auto absent = static_cast<std::uint8_t>(*service.noData);
-  std::vector<std::uint8_t>& rgba = image.tile.rgba;
+  ByteVector& rgba = image.tile.rgba;
   for (std::size_t at = 0; at < rgba.size(); at += 4) {
     if (rgba[at] == absent && rgba[at + 1] == absent && rgba[at + 2] == absent) {
       rgba[at + 3] = 0;
@@ -247,11 +246,8 @@ Result<SourceTilePointer> decodeTile(const TileService& service, std::size_t mat
       return published(decoded, [&](SourceTile& tile) { tile.heights = std::move(decoded.metres); });
     });
   }
-  return decodeColours(*fetched.body, service, matrix).map([&](const DecodedColours& decoded) {
-    return published(decoded, [&](SourceTile& tile) {
-      tile.colours.resize(decoded.rgba.size() / sizeof(Rgba));
-      std::memcpy(tile.colours.data(), decoded.rgba.data(), decoded.rgba.size());
-    });
+  return decodeColours(*fetched.body, service, matrix).map([&](DecodedColours decoded) {
+    return published(decoded, [&](SourceTile& tile) { tile.rgba = std::move(decoded.rgba); });
   });
 }
 

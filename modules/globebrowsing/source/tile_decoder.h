@@ -14,7 +14,7 @@ namespace meridian::globebrowsing {
 struct DecodedColours {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> rgba{};  ///< width * height * 4
+  ByteVector rgba{};  ///< width * height * 4
 
   /// The service said that there is nothing here.
   [[nodiscard]] bool isEmpty() const { return rgba.empty(); }

@@ -169,7 +169,7 @@ Result<void> TileMosaic::assemble(std::size_t level, const UnboundedWindow& wind
         done = fill(part, planned, target, window.width, stop);
         return;
       }
-      const std::vector<Pixel>& pixels = planned.tile->pixels(out);
+      const std::span<const Pixel> pixels = planned.tile->pixels(out);
       for (int y = 0; y < part.pixels.height; ++y) {
         const auto from = pixels.begin() + std::ptrdiff_t{1} * (part.row + y) * planned.tile->width + part.column;
         std::copy_n(from, part.pixels.width, target + std::ptrdiff_t{1} * y * window.width);

@@ -349,6 +349,32 @@ TEST(HttpFetcher, WaitsForAServerThatIsDownAndComesBackByItself) {
   EXPECT_EQ(fetcher.statistics().failures, 0U);
 }
 
+/// The requests that hung when the server came back hang until they are given up, and hold up no other for longer than
+/// a pause.
+TEST(HttpFetcher, ComesBackByItselfFromAServerThatStalled) {
+  FaultServer server;
+  std::atomic<bool> isStalled{true};
+  server.onAnything([&](const FaultServer::Request&) {
+    return isStalled ? Reply{.fault = Fault::StallAtOnce} : Reply{.body = "back"};
+  });
+  NetworkOptions options = quickOptions();
+  options.limits.totalTime = std::chrono::milliseconds(500);
+  HttpFetcher fetcher(options);
+  std::vector<std::unique_ptr<Asked>> asked;
+  for (int i = 0; i < 50; ++i) {
+    asked.push_back(std::make_unique<Asked>(fetcher, FetchRequest{.url = server.url("/" + std::to_string(i))}));
+  }
+  ASSERT_TRUE(eventually([&] { return fetcher.statistics().hostsDown == 1; }));
+  EXPECT_LE(server.mostAtOnce(), 2U * static_cast<std::size_t>(options.concurrency.perHost)) << "no storm";
+  isStalled = false;
+  for (const auto& one : asked) {
+    const auto answer = one->wait();
+    ASSERT_TRUE(answer) << answer.error().message();
+    EXPECT_EQ(textOf(*answer), "back");
+  }
+  EXPECT_EQ(fetcher.statistics().failures, 0U);
+}
+
 TEST(HttpFetcher, OneThatIsNotPatientSaysThatItsServerIsDown) {
   FaultServer server;
   server.on("/a", {.body = "a"});

@@ -37,7 +37,9 @@ Result<SourceTilePointer> decode(const TileService& /*service*/, std::size_t /*m
   tile->width = tile->height = 512;
   const std::uint8_t value = fetched.body->front();
   if (kind == PixelKind::Colours) {
-    tile->colours.assign(512 * 512, Rgba{value, 0, 0, 255});
+    for (int i = 0; i < 512 * 512; ++i) {
+      tile->rgba.insert(tile->rgba.end(), {value, 0, 0, 255});
+    }
   } else {
     tile->heights.assign(512 * 512, float{1.0F} * value);
   }

@@ -82,7 +82,7 @@ TEST_F(SourceTileStoreTest, FetchesAndDecodesOnceForAllAndAcceptsThen) {
   ASSERT_TRUE(first->isSettled() && second->isSettled());
   EXPECT_EQ(first->answer(0).tile, second->answer(1).tile);
   EXPECT_EQ(first->answer(0).tile->width, side);
-  EXPECT_EQ(first->answer(0).tile->colours.front(), (Rgba{7, 7, 7, 7}));
+  EXPECT_EQ(first->answer(0).tile->pixels(static_cast<const Rgba*>(nullptr)).front(), (Rgba{7, 7, 7, 7}));
   EXPECT_THAT(fetcher_->asked(), ElementsAre(Pair("0/1/1", 1), Pair("0/2/1", 1)));
   EXPECT_THAT(fetcher_->accepted(), ElementsAre(Pair("0/1/1", 1), Pair("0/2/1", 1)));
   EXPECT_THAT(fetcher_->rejected(), IsEmpty());
@@ -144,7 +144,7 @@ TEST_F(SourceTileStoreTest, RefusesTilesOfAnotherSize) {
 TEST_F(SourceTileStoreTest, KeepsKindsAndRulesApart) {
   const auto colours = get({{0, 1, 1}});
   const auto heights = get({{0, 1, 1}}, PixelKind::Heights);
-  EXPECT_TRUE(heights->answer(0).tile->colours.empty());
+  EXPECT_TRUE(heights->answer(0).tile->rgba.empty());
   EXPECT_EQ(heights->answer(0).tile->heights.size(), std::size_t{side * side});
   auto other = makeService();
   other->heightScale = 2.0;

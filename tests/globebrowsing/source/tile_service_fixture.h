@@ -71,7 +71,7 @@ inline Result<SourceTilePointer> decodeTexels(const TileService& /*service*/, st
   tile->width = tile->height = side;
   for (const Texel& texel : texels) {
     if (kind == PixelKind::Colours) {
-      tile->colours.push_back(texel.colour);
+      tile->rgba.insert(tile->rgba.end(), texel.colour.begin(), texel.colour.end());
     } else {
       tile->heights.push_back(texel.metres);
     }
