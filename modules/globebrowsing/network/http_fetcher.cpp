@@ -138,8 +138,8 @@ std::unique_ptr<PendingFetch> HttpFetcher::Engine::fetch(FetchRequest request, D
 
 void HttpFetcher::Engine::accept(const Fetched& answer) {
   if (answer.origin == nullptr || answer.body == nullptr || options_.cache.folder.empty() ||
-      cacheMode_ != CacheMode::ReadWrite ||
-      !isStorable(answer.origin->status, answer.origin->facts.fields) || answer.origin->isAccepted.exchange(true)) {
+      cacheMode_ != CacheMode::ReadWrite || !isStorable(answer.origin->status, answer.origin->facts.fields) ||
+      answer.origin->isAccepted.exchange(true)) {
     return;
   }
   cache_.store(answer.origin->key, {answer.origin->facts, answer.body});
