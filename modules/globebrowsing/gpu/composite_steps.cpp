@@ -34,9 +34,9 @@ bool isOnTheWay(const LayerStepPointer& from, const LayerStepPointer& step, cons
 /// Layers came, went or were changed: those that stay also stay at the step that is drawn.
 void CompositeStore::takeSteps(KindState& state) {
   const std::vector<Layer*>& enabled = state.layers;
-  state.shown.steps = stepsOfLayers(state, state.shown);
+  takeSteps(state, state.shown);
   if (state.pair.isMixed) {
-    state.next.steps = stepsOfLayers(state, state.next);  // it is drawn, and brought up to date like the shown one
+    takeSteps(state, state.next);  // it is drawn, and brought up to date like the shown one
     return;
   }
   // What of the next step was composed before the change will do, and is composed anew after the exchange.
@@ -49,15 +49,22 @@ void CompositeStore::takeSteps(KindState& state) {
   }
 }
 
-std::vector<LayerStepPointer> CompositeStore::stepsOfLayers(const KindState& state, const Generation& before) const {
+void CompositeStore::takeSteps(KindState& state, Generation& generation) {
   std::vector<LayerStepPointer> steps;
+  bool comesWithSteps = false;
   for (const Layer* layer : state.layers) {
-    const auto drawn = std::find_if(before.steps.begin(), before.steps.end(), [layer](const auto& step) {
+    const auto drawn = std::find_if(generation.steps.begin(), generation.steps.end(), [layer](const auto& step) {
       return step != nullptr && step->source() == layer->provider().get();
     });
-    steps.push_back(drawn != before.steps.end() ? *drawn : layer->step());
+    const bool isNew = drawn == generation.steps.end();
+    steps.push_back(isNew ? layer->step() : *drawn);
+    // A layer that comes back may find composites of its own, of another step.
+    comesWithSteps = comesWithSteps || (isNew && layer->provider()->steps() != nullptr);
   }
-  return steps;
+  generation.steps = std::move(steps);
+  if (comesWithSteps) {
+    generation.stamp = ++state.lastStamp;
+  }
 }
 
 void CompositeStore::beginNext(CompositeKind kind) {
@@ -169,6 +176,9 @@ std::uint8_t CompositeStore::nextOwnerLevel(CompositeKind kind, const TileIndex&
   KindState& state = kinds_[static_cast<std::size_t>(kind)];
   if (const auto found = state.nextOwnerLevels.find(index); found != state.nextOwnerLevels.end()) {
     return found->second;
+  }
+  if (state.nextOwnerLevels.size() > mostFacts) {
+    state.nextOwnerLevels.clear();
   }
   const std::optional<TileIndex> parent = tiling_->parent(index);
   const bool own = !parent || anyFiner(kind, state.next, *parent);

@@ -11,8 +11,6 @@ namespace meridian::globebrowsing {
 
 namespace {
 
-/// Facts of tiles long gone are dropped when there are that many.
-constexpr std::size_t mostFacts = 1 << 15;
 /// Less for what is drawn and will be exchanged soon.
 constexpr double soonReplaced = 4.0;
 /// Less for what is there, and not drawn, as roots: who changes a layer wants to see that.
@@ -91,8 +89,9 @@ bool CompositeStore::updateKind(CompositeKind kind) {
   }
   const bool coloursHeights = std::any_of(state.layers.begin(), state.layers.end(),
                                           [](const Layer* layer) { return isRelief(layer->sampling()); });
-  if (const std::uint32_t stream = coloursHeights ? relief_.stream() : 0; state.reliefStream != stream) {
-    state.reliefStream = stream;
+  // What a layer that comes or goes changes, its version tells.
+  if (coloursHeights && state.reliefStream != relief_.stream()) {
+    state.reliefStream = relief_.stream();
     state.shown.stamp = ++state.lastStamp;
     state.next.stamp = ++state.lastStamp;  // what there is of it will do, and is composed anew after the exchange
     changed = true;
@@ -144,8 +143,11 @@ bool CompositeStore::anyFiner(CompositeKind kind, const TileIndex& index) const 
 
 bool CompositeStore::isFiner(const Layer& layer, const LayerStepPointer& step, const TileIndex& index) const {
   if (isRelief(layer.sampling())) {
-    // Lines are as thin as the composite lets them be, however coarse the heights are.
-    return layer.sampling() == Sampling::Isolines ? index.level < maximumLevel : relief_.hasFiner(index);
+    // Lines are as thin as the composite lets them be, however coarse the heights are, as long as their slope tells
+    // where they are.
+    constexpr int levelsOfLines = 6;
+    const int coarser = layer.sampling() == Sampling::Isolines ? levelsOfLines : 0;
+    return index.level < coarser || relief_.hasFiner(ancestor(index, index.level - coarser));
   }
   return isTile(layer) && step != nullptr && step->tiles()->hasFinerColours(*tiling_, index);
 }

@@ -118,6 +118,8 @@ class CompositeStore {
   }
 
  private:
+  /// Facts of tiles long gone are dropped when there are that many.
+  static constexpr std::size_t mostFacts = 1 << 15;
   /// What is known of a tile's colours as long as no layer changes.
   struct Facts {
     std::array<std::uint8_t, compositeKindCount> ownerLevel{};  ///< of the tile whose composite is drawn
@@ -157,7 +159,7 @@ class CompositeStore {
     std::uint64_t version = 0;       ///< of the groups' settings
     std::vector<Layer*> layers;      ///< that are enabled
     StructureKey key;                ///< of these
-    std::uint32_t reliefStream = 0;  ///< that its composites were made from; 0: none of its layers colours heights
+    std::uint32_t reliefStream = 0;  ///< that its composites were last made from, if any of its layers colours heights
     OpeningWait opening;
     FadeWatch fade;
     bool noRoomToFade = false;  ///< the pool has none for second composites, as long as this fade goes on
@@ -190,7 +192,8 @@ class CompositeStore {
   bool updateKind(CompositeKind kind);
   void takeLayers(CompositeKind kind);
   void takeSteps(KindState& state);
-  [[nodiscard]] std::vector<LayerStepPointer> stepsOfLayers(const KindState& state, const Generation& before) const;
+  /// The same of one generation.
+  void takeSteps(KindState& state, Generation& generation);
   void beginNext(CompositeKind kind);
   void dropNext(KindState& state);
   void updateInterpolation(KindState& state) const;

@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "globebrowsing/layers/blend.h"
+#include "globebrowsing/layers/data_properties.h"
 #include "globebrowsing/layers/layer_description.h"
 #include "globebrowsing/layers/layer_group.h"
 #include "globebrowsing/layers/step_player.h"
@@ -40,6 +41,12 @@ class Layer final : public PropertyOwner {
   Layer(LayerDescription description, LayerGroupId group, const LayerServices& services,
         std::function<void(Layer&, Change)> changed);
   ~Layer() override;
+
+  /// The table that makes the layer as it is now: its own, with what was set since, and paths that hold anywhere.
+  [[nodiscard]] Value table() const;
+  /// Whether a user added it, rather than an asset.
+  [[nodiscard]] bool isUsers() const { return isUsers_; }
+  void setUsers() { isUsers_ = true; }
 
   /// What its provider is made from.
   [[nodiscard]] const ProviderRequest& request() const { return request_; }
@@ -105,6 +112,7 @@ class Layer final : public PropertyOwner {
   TriggerProperty reset{{"Reset", "Reset", "Opens the data anew and drops the layer's tiles"}};
   TriggerProperty remove{{"Remove", "Remove", "Deletes the layer from its group"}};
   StringProperty guiDescription;
+  StringProperty attribution;
   StringProperty status{{"Status", "Status", "not opened, opening, ready or failed", true}, "not opened"};
   StringProperty lastError{{"LastError", "Last error", "What went wrong last with this layer's data", true}};
   Vec3Property colour;
@@ -124,10 +132,13 @@ class Layer final : public PropertyOwner {
   void addProperties();
   void connectProperties();
   void attachProvider();
-  void restart();
+  void detachProvider();
+  /// Makes the provider anew from such a request, which becomes the layer's; on an error it keeps what it has.
+  void restart(ProviderRequest request);
   void play(const Time& now);
   void updateStatus();
   void updateRelief();
+  void updateAttribution();
   void noteWaiting();
 
   LayerGroupId group_;
@@ -136,6 +147,8 @@ class Layer final : public PropertyOwner {
   bool hadZIndex_;
   Sampling sampling_;
   ProviderRequest request_;
+  bool wantsRestart_ = false;  ///< not at once: whoever sets many properties holds those of the provider
+  DataProperties data_;
   std::shared_ptr<TileProvider> provider_;
   LayerServices services_;
   StepPlayer player_;
@@ -143,10 +156,12 @@ class Layer final : public PropertyOwner {
   std::function<void(Layer&, Change)> changed_;
   TileProvider::State seenState_ = TileProvider::State::NotOpened;
   const Error* seenError_ = nullptr;
+  const bool hasOwnAttribution_;
   std::string seenFailure_;  ///< of tiles that wait
   std::string seenProblem_;  ///< of its ReliefStyle
   int framesUntilLook_ = 0;
   bool wantsRemoval_ = false;
+  bool isUsers_ = false;
   bool quiet_ = false;  ///< SetDefault tells once, not three times
 };
 

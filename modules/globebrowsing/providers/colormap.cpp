@@ -3,38 +3,24 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <utility>
-#include <vector>
 
+#include "globebrowsing/source/document_file.h"
 #include "globebrowsing/source/tile_formats.h"
 
 namespace meridian::globebrowsing {
 
 namespace {
 
-constexpr std::size_t mostBytes = std::size_t{16} << 20;
-
-Result<std::vector<std::uint8_t>> readFile(const std::string& path, const std::string& where) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const std::streamoff size = file ? std::streamoff{file.tellg()} : -1;
-  if (size < 0 || static_cast<std::size_t>(size) > mostBytes) {
-    return failure("the colormap " + path + (size < 0 ? " cannot be read" : " is larger than 16 MiB"), where,
-                   "name an image that is one row of colours");
-  }
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
-  file.seekg(0);
-  file.read(reinterpret_cast<char*>(bytes.data()), size);
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
-  return bytes;
-}
+constexpr std::size_t mostBytes = std::size_t{1} << 20;
 
 }  // namespace
 
 Result<std::shared_ptr<const Colormap>> Colormap::read(const std::string& path, const std::string& where) {
-  return readFile(path, where)
-      .and_then([&](const std::vector<std::uint8_t>& bytes) {
-        return decodeByGdal(bytes, where).map_error([&](Error error) {
+  return readTextFile(path, mostBytes, where, "name an image that is one row of colours")
+      .and_then([&](const std::string& bytes) {
+        const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+        return decodeByGdal({data, bytes.size()}, where).map_error([&](Error error) {
           error.what = "the colormap " + path + ": " + error.what;
           return error;
         });

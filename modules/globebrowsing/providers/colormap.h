@@ -14,7 +14,7 @@ namespace meridian::globebrowsing {
 class Colormap {
  public:
   /// The first row of an image, or where that is one pixel wide, its column. Blocking. Errors: no such file, more than
-  /// 16 MiB, no image that is read here.
+  /// 1 MiB, no image that is read here.
   [[nodiscard]] static Result<std::shared_ptr<const Colormap>> read(const std::string& path, const std::string& where);
 
   /// Red, green, blue of each of the values 0/255 to 255/255.

@@ -1,7 +1,6 @@
 #include "globebrowsing/providers/temporal_tile_provider.h"
 
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "globebrowsing/providers/inner_providers.h"
 #include "globebrowsing/providers/service_series.h"
 #include "globebrowsing/providers/temporal_document.h"
+#include "globebrowsing/source/document_file.h"
 #include "globebrowsing/source/source_tile_store.h"
 #include "host/api/log.h"
 
@@ -20,21 +20,6 @@ namespace {
 
 /// Of an XML file; there is no longer one.
 constexpr std::size_t mostDocumentBytes = std::size_t{1} << 20;
-
-Result<std::string> readDocument(const std::string& path, const std::string& where) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text(mostDocumentBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (file.bad() || (text.empty() && !file.eof())) {
-    return failure("the file " + path + " cannot be read", where, "check its permissions");
-  }
-  if (text.size() > mostDocumentBytes) {
-    return failure("the file " + path + " is no description of a series: it is larger than 1 MiB", where,
-                   "name an <OpenSpaceTemporalGDALDataset>, or use Mode, Prototyped and Folder");
-  }
-  return text;
-}
 
 Result<std::unique_ptr<TimeSeries>> seriesOf(std::string_view document, const ProviderRequest& request) {
   return readTemporalDocument(document, placeOf(request, "FilePath"))
@@ -166,7 +151,9 @@ Result<void> TemporalTileProvider::openData() {
   }
   if (isNamed_) {
     Result<std::unique_ptr<TimeSeries>> series = openSeries();
-    opening_.reset();
+    if (opening_ != nullptr) {
+      opening_->end();
+    }
     if (!series) {
       return tl::make_unexpected(std::move(series.error()));
     }
@@ -199,9 +186,9 @@ Result<std::unique_ptr<TimeSeries>> TemporalTileProvider::openSeries() {
   }
   // Relative paths in the file start at the file.
   rasters_.folder = std::filesystem::path(path.text).parent_path().string();
-  return readDocument(path.text, placeOf(request_, "FilePath")).and_then([&](const std::string& text) {
-    return seriesOf(text, rasters_);
-  });
+  return readTextFile(path.text, mostDocumentBytes, placeOf(request_, "FilePath"),
+                      "name an <OpenSpaceTemporalGDALDataset>, or use Mode, Prototyped and Folder")
+      .and_then([&](const std::string& text) { return seriesOf(text, rasters_); });
 }
 
 TimeSeries::Entry TemporalTileProvider::entryAt(const Time& now) const {

@@ -26,6 +26,9 @@ class TemporalTileProvider final : public SteppedTileProvider {
   TemporalTileProvider(ProviderRequest request, std::unique_ptr<TimeSeries> series);
 
   [[nodiscard]] Result<void> check() const override;
+  [[nodiscard]] std::optional<Error> lastFailure() const override {
+    return state() == State::Opening && opening_ != nullptr ? opening_->lastFailure() : std::nullopt;
+  }
   [[nodiscard]] PropertyOwner* properties() override { return &owner_; }
   [[nodiscard]] TileStep at(const Time& now) const override;
   [[nodiscard]] Result<std::shared_ptr<TileProvider>> make(const Time& now) const override;
@@ -50,7 +53,7 @@ class TemporalTileProvider final : public SteppedTileProvider {
 
   const ProviderRequest request_;
   const bool isNamed_;                        ///< the series is in what FilePath names
-  std::unique_ptr<ServiceOpening> opening_;   ///< until it is open; null where there is no network
+  std::unique_ptr<ServiceOpening> opening_;   ///< null where there is no network
   ProviderRequest rasters_;                   ///< what each of them is made from; final once open
   std::unique_ptr<TimeSeries> series_;        ///< likewise
   std::shared_ptr<const Colormap> colormap_;  ///< likewise; null without the key

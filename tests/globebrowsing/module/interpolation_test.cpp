@@ -319,12 +319,13 @@ TEST_F(InterpolationTest, TheCameraMovesMeanwhile) {
 TEST_F(InterpolationTest, GoesOnWithoutRoomForTwoTimes) {
   setModuleProperty("TexturePoolSize", 64);
   time_ = at(0.5);
-  look(0.1, 0.2, 6.6e6);
+  look(0.1, 0.2, 1.2e7);
   std::filesystem::create_directory(folder_ / "D");
   for (int i = 0; i < 3; ++i) {
     uniformRaster("D/d" + nameOf(i) + ".tif", colourOf(i), 4096);
   }
-  RenderableGlobe& globe = addReadyGlobe({{"ColorLayers", listOf({series("D", {})})}});
+  RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({series("D", {})})}}, {{"TargetLodScaleFactor", 20.0}});
+  ASSERT_TRUE(settle());
   EXPECT_FALSE(store(globe).fading().has_value()) << "there is room";
   for (int n = 0; n <= 12; ++n) {
     time_ = at(0.5 + 0.1 * n);

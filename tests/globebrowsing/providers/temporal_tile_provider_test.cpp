@@ -308,7 +308,7 @@ TEST_F(TemporalTileProviderTest, SaysWhatIsWrongWithItsData) {
         Case{inFolder("nothing"), true, "none of the 0 files"},
         Case{inFolder(".", "moon.%Y"), true, "none of the 5 files"},
         Case{{{"Type", "TemporalTileLayer"}, {"FilePath", "gone.xml"}}, false, "does not exist"},
-        Case{{{"Type", "TemporalTileLayer"}, {"FilePath", "large.xml"}}, true, "larger than"},
+        Case{{{"Type", "TemporalTileLayer"}, {"FilePath", "large.xml"}}, true, "longer than"},
         Case{{{"Type", "TemporalTileLayer"}, {"FilePath", "empty.xml"}}, true, "no XML"},
         Case{prototyped({{"Prototype", "gone/${OpenSpaceTimeId}.tif"}}), false, "does not exist"}}) {
     const auto made = makeProvider(requestFor(c.fields, folder_.path()));
