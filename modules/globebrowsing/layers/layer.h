@@ -82,6 +82,10 @@ class Layer final : public PropertyOwner {
   /// The tiles to show: those of the provider, or of its step at the time of the last update. Another after Reset and
   /// with each step; null while the first step is being opened.
   [[nodiscard]] const LayerStepPointer& step() const { return step_; }
+  /// Where steps are interpolated, what step() is mixed with now, and how much of that there is, 0 to 1. Null where the
+  /// picture is step()'s alone.
+  [[nodiscard]] const LayerStepPointer& otherStep() const { return player_.other(); }
+  [[nodiscard]] double otherWeight() const { return player_.otherWeight(); }
   /// Steps whose tiles are worth fetching although nobody sees them yet, nearest first.
   [[nodiscard]] const std::vector<LayerStepPointer>& ahead() const { return player_.ahead(); }
   /// Of step()'s tiles in the TileStreamer; 0 without a streamer or step.
@@ -90,7 +94,8 @@ class Layer final : public PropertyOwner {
   [[nodiscard]] bool isReady() const;
   /// Whether it has nothing to show yet because its data are being opened.
   [[nodiscard]] bool isOpening() const;
-  /// The same, or it shows an earlier step because the present one is being opened.
+  /// The same, or it shows an earlier step because the present one is being opened, or one alone because the one to mix
+  /// it with is.
   [[nodiscard]] bool awaitsData() const { return isOpening() || player_.awaits(); }
 
   /// Opens the provider when the layer has been enabled, goes to the step of that time, and brings Status and LastError

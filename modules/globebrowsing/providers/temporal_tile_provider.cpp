@@ -1,8 +1,10 @@
 #include "globebrowsing/providers/temporal_tile_provider.h"
 
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
+#include "globebrowsing/providers/colormapped_tile_provider.h"
 #include "globebrowsing/providers/date_text.h"
 #include "globebrowsing/providers/default_tile_provider.h"
 #include "globebrowsing/providers/inner_providers.h"
@@ -65,8 +67,9 @@ const Schema& TemporalTileProvider::schema() {
         "<OpenSpaceTemporalGDALDataset>, or a file that holds one"},
        {"UseFixedTime", Type::Boolean, "whether FixedTime is shown whatever the time"},
        {"FixedTime", Type::String, "the date to show then"},
-       {"Interpolation", Type::Boolean, "whether steps are blended into each other; without effect here"},
-       {"Colormap", Type::String, "an image whose first row colours blended steps; without effect here"}});
+       {"Interpolation", Type::Boolean, "whether the picture between two steps is a mixture of both, by the time"},
+       {"Colormap", Type::String,
+        "an image whose first row says the colours of the first band, from its least value to its greatest"}});
   return fields;
 }
 
@@ -84,6 +87,7 @@ Result<std::shared_ptr<TileProvider>> TemporalTileProvider::make(const ProviderR
     provider->fixedTime.put(*text);
   }
   provider->useFixedTime.put(valueAt(request.table, "UseFixedTime").boolean().value_or(false));
+  provider->interpolation.put(valueAt(request.table, "Interpolation").boolean().value_or(false));
   if (Result<void> read = provider->readFixedTime(); !read) {
     read.error().where = placeOf(request, "FixedTime");
     return tl::make_unexpected(std::move(read.error()));
@@ -106,6 +110,7 @@ TemporalTileProvider::TemporalTileProvider(ProviderRequest request, std::unique_
   }
   owner_.addProperty(useFixedTime);
   owner_.addProperty(fixedTime);
+  owner_.addProperty(interpolation);
 }
 
 Result<void> TemporalTileProvider::readFixedTime() {
@@ -116,7 +121,21 @@ Result<void> TemporalTileProvider::readFixedTime() {
   return readDate(fixedTime.get()).map([this](Time::UtcInstant instant) { fixed_ = instant; });
 }
 
+std::string TemporalTileProvider::colormapPath() const {
+  const std::string* path = valueAt(request_.table, "Colormap").string();
+  return path == nullptr || path->empty() ? std::string() : dataPath(*path, request_.folder).text;
+}
+
 Result<void> TemporalTileProvider::check() const {
+  std::error_code code;
+  if (const std::string path = colormapPath(); !path.empty() && !std::filesystem::is_regular_file(path, code)) {
+    return failure("the colormap " + path + " does not exist", placeOf(request_, "Colormap"),
+                   "check Colormap; a relative path starts at the asset's folder");
+  }
+  return checkSeries();
+}
+
+Result<void> TemporalTileProvider::checkSeries() const {
   return isNamed_ ? checkData(dataPath(*valueAt(request_.table, "FilePath").string(), request_.folder),
                               placeOf(request_, "FilePath"))
                   : series_->check();
@@ -139,6 +158,13 @@ Result<void> TemporalTileProvider::openData() {
       return tl::make_unexpected(std::move(series.error()));
     }
     series_ = std::move(*series);
+  }
+  if (const std::string path = colormapPath(); !path.empty()) {
+    Result<std::shared_ptr<const Colormap>> colormap = Colormap::read(path, placeOf(request_, "Colormap"));
+    if (!colormap) {
+      return tl::make_unexpected(std::move(colormap.error()));
+    }
+    colormap_ = std::move(*colormap);
   }
   return series_->open();
 }
@@ -166,7 +192,7 @@ Result<std::unique_ptr<TimeSeries>> TemporalTileProvider::openSeries() {
 }
 
 TimeSeries::Entry TemporalTileProvider::entryAt(const Time& now) const {
-  return useFixedTime.get() && fixed_ ? series_->atFixed(*fixed_) : series_->at(now.utcInstant());
+  return isFixed() ? series_->atFixed(*fixed_) : series_->at(now.utcInstant());
 }
 
 TileStep TemporalTileProvider::at(const Time& now) const {
@@ -175,11 +201,14 @@ TileStep TemporalTileProvider::at(const Time& now) const {
   step.id = static_cast<std::uint64_t>(entry.instant.time_since_epoch().count());
   step.begin = entry.begin ? Time::fromUtcInstant(*entry.begin) : step.begin;
   step.end = entry.end ? Time::fromUtcInstant(*entry.end) : step.end;
+  step.instant = Time::fromUtcInstant(entry.instant);
   return step;
 }
 
 Result<std::shared_ptr<TileProvider>> TemporalTileProvider::make(const Time& now) const {
-  return series_->tiles(entryAt(now).instant, rasters_);
+  return series_->tiles(entryAt(now).instant, rasters_).map([this](std::shared_ptr<TileProvider> values) {
+    return colormap_ == nullptr ? values : std::make_shared<ColormappedTileProvider>(std::move(values), colormap_);
+  });
 }
 
 Result<std::shared_ptr<TileProvider>> RasterSeries::tiles(Instant entry, const ProviderRequest& rasters) const {
