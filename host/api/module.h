@@ -44,10 +44,13 @@ class Host {
   struct ScriptPlace {
     std::string where;
     std::string folder;
+    bool isAsset = false;  ///< it is an asset's code
   };
   [[nodiscard]] virtual ScriptPlace scriptPlace() const = 0;
   /// The whole path, tokens replaced. Errors: unknown tokens; where scripts may not read.
   [[nodiscard]] virtual Result<std::filesystem::path> readablePath(std::string_view path) const = 0;
+  /// Likewise where scripts may write.
+  [[nodiscard]] virtual Result<std::filesystem::path> writablePath(std::string_view path) const = 0;
   /// What a Lua file of data returns, or else the globals that it sets; run in a sandbox of its own.
   [[nodiscard]] virtual Result<Value> readLuaData(const std::filesystem::path& file) const = 0;
   /// As openspace.addSceneGraphNode.

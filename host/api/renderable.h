@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/api/error.h"
@@ -41,6 +42,9 @@ class Renderable : public PropertyOwner {
   [[nodiscard]] virtual double boundingSphere() const { return 0.0; }
   /// Null unless it is something to stand on.
   [[nodiscard]] virtual Ground* ground() { return nullptr; }
+  /// Appends whom the data are to be credited to that the last frame showed, those that are in the list already left
+  /// out. Asked for every frame; the texts are good until the next update.
+  virtual void addAttributions(std::vector<std::string_view>& /*list*/) const {}
 
   /// What `--validate` counts and lists.
   struct Contents {

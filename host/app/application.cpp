@@ -9,6 +9,7 @@
 #include "host/navigation/flight_scripts.h"
 #include "host/navigation/placing_scripts.h"
 #include "host/navigation/script_library.h"
+#include "host/recording/recording_scripts.h"
 #include "host/scene/scene_scripts.h"
 #include "host/scripting/foreign_scripts.h"
 #include "host/scripting/lua_data.h"
@@ -19,6 +20,7 @@ namespace meridian::app {
 
 RenderSettings::RenderSettings() : PropertyOwner("RenderEngine", "Render engine") {
   addProperty(antialiasing);
+  addProperty(showAttribution);
   addProperty(verticalSync);
 }
 
@@ -63,6 +65,7 @@ void Application::registerLibraries() {
   const auto missing = [this](const std::filesystem::path& path) { assetLoader_.noteMissing(path); };
   scripts_.registerLibrary(assets::fileLibrary(tokens_, folder, missing));
   scripts_.registerLibrary(assets::orbitLibrary(tokens_, folder, missing));
+  scripts_.registerLibrary(recordingLibrary());
   scripts_.registerLibrary(navigation::navigationLibrary(camera_, navigator_));
   scripts_.registerLibrary(navigation::flightLibrary(camera_, navigator_, flight_));
   scripts_.registerLibrary(navigation::pathLibrary(camera_, navigator_, flight_));
@@ -85,6 +88,20 @@ ScriptLibrary Application::moduleLibrary() const {
               }
               return std::vector<Value>{hasModule(*a[0].string())};
             }}}};
+}
+
+ScriptLibrary Application::recordingLibrary() {
+  const auto whole = [this](std::string_view path) {
+    return tokens_.expand(path).map([this](const std::filesystem::path& expanded) {
+      return expanded.is_absolute() ? expanded : *tokens_.find("RECORDINGS") / expanded;
+    });
+  };
+  const auto readable = [this](const std::filesystem::path& path) { return tokens_.readable(path); };
+  const auto writable = [this](const std::filesystem::path& path) { return tokens_.writable(path); };
+  return recording::recordingLibrary(
+      recording_, {[whole, readable](std::string_view path) { return whole(path).and_then(readable); },
+                   [whole, writable](std::string_view path) { return whole(path).and_then(writable); },
+                   paths_.temporary / "session.osrectxt"});
 }
 
 bool Application::hasModule(std::string_view name) const {
@@ -149,15 +166,21 @@ std::vector<std::string> Application::nodes() const {
 }
 
 Host::ScriptPlace Application::scriptPlace() const {
-  return {scripts_.place(), assetLoader_.currentFolder()};
+  return {scripts_.place(), assetLoader_.currentFolder(), assetLoader_.runsAsset()};
+}
+
+Result<std::filesystem::path> Application::wholePath(std::string_view path) const {
+  return tokens_.expand(path).map([this](const std::filesystem::path& expanded) {
+    return expanded.is_absolute() ? expanded : (assetLoader_.currentFolder() / expanded).lexically_normal();
+  });
 }
 
 Result<std::filesystem::path> Application::readablePath(std::string_view path) const {
-  return tokens_.expand(path)
-      .map([this](const std::filesystem::path& expanded) {
-        return expanded.is_absolute() ? expanded : (assetLoader_.currentFolder() / expanded).lexically_normal();
-      })
-      .and_then([this](const std::filesystem::path& whole) { return tokens_.readable(whole); });
+  return wholePath(path).and_then([this](const std::filesystem::path& whole) { return tokens_.readable(whole); });
+}
+
+Result<std::filesystem::path> Application::writablePath(std::string_view path) const {
+  return wholePath(path).and_then([this](const std::filesystem::path& whole) { return tokens_.writable(whole); });
 }
 
 Result<Value> Application::readLuaData(const std::filesystem::path& file) const {

@@ -18,6 +18,7 @@
 #include "host/navigation/camera.h"
 #include "host/navigation/flight.h"
 #include "host/navigation/orbit_navigator.h"
+#include "host/recording/session_control.h"
 #include "host/scene/scene.h"
 #include "host/scripting/actions.h"
 #include "host/scripting/clock.h"
@@ -33,6 +34,8 @@ class RenderSettings final : public PropertyOwner {
   RenderSettings();
   IntProperty antialiasing{
       {"Antialiasing", "Antialiasing", "Samples a pixel: 1 is none; others become what the driver has"}, 1, 1, 4};
+  BoolProperty showAttribution{
+      {"ShowAttribution", "Show attribution", "Whether the credits of what is seen stand on the picture"}, true};
   BoolProperty verticalSync{{"VerticalSync", "Vertical sync", "Whether frames wait for the screen"}, true};
 };
 
@@ -64,6 +67,7 @@ class Application final : public Host, private assets::AssetTarget {
   [[nodiscard]] std::vector<std::string> nodes() const override;
   [[nodiscard]] ScriptPlace scriptPlace() const override;
   [[nodiscard]] Result<std::filesystem::path> readablePath(std::string_view path) const override;
+  [[nodiscard]] Result<std::filesystem::path> writablePath(std::string_view path) const override;
   [[nodiscard]] Result<Value> readLuaData(const std::filesystem::path& file) const override;
   Result<void> addSceneGraphNode(const Value& table) override;
 
@@ -74,6 +78,7 @@ class Application final : public Host, private assets::AssetTarget {
   [[nodiscard]] navigation::Camera& camera() { return camera_; }
   [[nodiscard]] navigation::OrbitNavigator& navigator() { return navigator_; }
   [[nodiscard]] navigation::Flight& flight() { return flight_; }
+  [[nodiscard]] recording::SessionControl& recording() { return recording_; }
   [[nodiscard]] scripting::Clock& clock() { return clock_; }
   [[nodiscard]] scripting::ScriptEngine& scripts() { return scripts_; }
   [[nodiscard]] scripting::PropertyIndex& properties() { return properties_; }
@@ -89,11 +94,13 @@ class Application final : public Host, private assets::AssetTarget {
   [[nodiscard]] double seconds() const { return seconds_; }
 
  private:
+  [[nodiscard]] Result<std::filesystem::path> wholePath(std::string_view path) const;
   Result<void> addNode(const Value& table, const std::string& where, const std::string& folder) override;
   Result<void> removeNode(const std::string& identifier) override;
   [[nodiscard]] bool hasNode(const std::string& identifier) const override;
   void registerLibraries();
   [[nodiscard]] ScriptLibrary moduleLibrary() const;
+  [[nodiscard]] ScriptLibrary recordingLibrary();
 
   // In the order of use: what comes later refers to what comes before and goes first.
   Paths paths_;
@@ -110,6 +117,7 @@ class Application final : public Host, private assets::AssetTarget {
   navigation::Flight flight_{camera_, navigator_};
   RenderSettings renderSettings_;
   scripting::ScriptEngine scripts_;
+  recording::SessionControl recording_{camera_, clock_, scripts_};
   scripting::Actions actions_{scripts_};
   scripting::KeyBindings keys_{actions_};
   scripting::PropertyIndex properties_{root_};

@@ -28,6 +28,12 @@ class Sink {
   virtual Result<void> finish() = 0;
 };
 
+Result<void> writePicture(const fs::path& file, const graphics::Image& picture) {
+  graphics::PngOptions options;
+  options.metadata = picture.metadata;
+  return graphics::writePng(file, picture.pixels, picture.size, options);
+}
+
 class PictureSink final : public Sink {
  public:
   explicit PictureSink(fs::path file) : file_(std::move(file)) {}
@@ -35,9 +41,7 @@ class PictureSink final : public Sink {
     last_ = std::move(picture);
     return {};
   }
-  Result<void> finish() override {
-    return last_ ? graphics::writePng(file_, last_->pixels, last_->size) : Result<void>{};
-  }
+  Result<void> finish() override { return last_ ? writePicture(file_, *last_) : Result<void>{}; }
 
  private:
   fs::path file_;
@@ -48,7 +52,7 @@ class FolderSink final : public Sink {
  public:
   explicit FolderSink(fs::path folder) : folder_(std::move(folder)) {}
   Result<void> add(graphics::Image picture) override {
-    return graphics::writePng(folder_ / fmt::format("frame_{:06}.png", count_++), picture.pixels, picture.size);
+    return writePicture(folder_ / fmt::format("frame_{:06}.png", count_++), picture);
   }
   Result<void> finish() override { return {}; }
 

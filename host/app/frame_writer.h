@@ -15,7 +15,8 @@ namespace meridian::app {
 ///
 /// What it writes follows from the path: NAME.png gets the last picture; NAME.mp4, .mkv, .webm or .mov becomes a video
 /// (H.264 or MPEG-4; VP9 or VP8 in .webm); a name without extension, or a folder that is there, becomes a folder of
-/// frame_000000.png, frame_000001.png ...
+/// frame_000000.png, frame_000001.png ... A picture's metadata go into its file; of a video's, "Copyright" goes into
+/// the container, as VideoEncoder says.
 class FrameWriter {
  public:
   enum class Kind { Picture, Folder, Video };

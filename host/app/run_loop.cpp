@@ -89,6 +89,9 @@ Result<void> RunLoop::drawOnce(Clock::time_point begin, double deltaSeconds, boo
   if (auto drawn = renderer.draw(moment, parts_.application.camera(), shape); !drawn) {
     return drawn;
   }
+  if (isDrawn && parts_.application.renderSettings().showAttribution.get()) {
+    caption_.draw(renderer.target(), renderer.attribution());
+  }
   present();
   renderer.endFrame();
   figures.cpu = millisecondsSince(begin);
@@ -160,7 +163,11 @@ Result<void> RunLoop::writePicture() {
     return {};
   }
   const graphics::RenderTarget& target = parts_.renderer.target();
-  return parts_.writer->write({target.size(), target.readPixels(), {}});
+  graphics::Image picture{target.size(), target.readPixels(), {}};
+  if (const std::string& attribution = parts_.renderer.attribution(); !attribution.empty()) {
+    picture.metadata["Copyright"] = attribution;
+  }
+  return parts_.writer->write(std::move(picture));
 }
 
 void RunLoop::tellProgress() {

@@ -10,6 +10,7 @@
 #include "host/app/scene_renderer.h"
 #include "host/app/session.h"
 #include "host/graphics/context.h"
+#include "host/ui/caption.h"
 #include "host/ui/user_interface.h"
 
 namespace meridian::app {
@@ -55,6 +56,7 @@ class RunLoop {
 
   const Options& options_;
   Parts parts_;
+  ui::Caption caption_;
   std::uint64_t frames_ = 0;    ///< done
   std::uint64_t drawings_ = 0;  ///< of them, with those of --settle
   Clock::time_point lastTold_ = Clock::now();

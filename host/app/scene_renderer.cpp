@@ -108,8 +108,21 @@ Result<void> SceneRenderer::draw(const Moment& moment, const navigation::Camera&
     target_.bind();
     drawItems(frame);
     timer_.end();
+    gatherAttributions();
   }
   return {};
+}
+
+void SceneRenderer::gatherAttributions() {
+  attributions_.clear();
+  for (const Item* item : order_) {
+    item->renderable->addAttributions(attributions_);
+  }
+  attribution_.clear();  // both keep their memory
+  for (const std::string_view text : attributions_) {
+    attribution_.append(attribution_.empty() ? "" : " | ").append(text);
+  }
+  attributions_.clear();
 }
 
 void SceneRenderer::drawItems(const FrameContext& frame) {

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -64,6 +66,9 @@ class SceneRenderer {
   /// Whether every globe's view is what it will be; if not, the first that is not says why. Of the frame drawn last.
   [[nodiscard]] Settled settled() const;
 
+  /// Whom the data are to be credited to that the frame drawn last shows, parted by " | "; empty: nobody.
+  [[nodiscard]] const std::string& attribution() const { return attribution_; }
+
   [[nodiscard]] const graphics::RenderTarget& target() const { return target_; }
   [[nodiscard]] graphics::Graphics& graphics() { return *graphics_; }
 
@@ -82,6 +87,7 @@ class SceneRenderer {
   void forget(const scene::SceneNode& node);
   void takeGpuTime();
   void drawItems(const FrameContext& frame);
+  void gatherAttributions();
 
   Statistics& statistics_;
   scene::Scene& scene_;
@@ -91,6 +97,8 @@ class SceneRenderer {
   graphics::GpuTimer timer_;
   std::vector<Item> items_;
   std::vector<Item*> order_;
+  std::vector<std::string_view> attributions_;
+  std::string attribution_;
   std::size_t nodesSeen_ = 0;
   unsigned structureSeen_ = 0;
   int removalKey_;

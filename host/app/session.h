@@ -1,13 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "host/api/error.h"
 #include "host/app/application.h"
 #include "host/app/options.h"
-#include "host/recording/player.h"
-#include "host/recording/recorder.h"
 #include "host/scripting/frame_timer.h"
 
 namespace meridian::app {
@@ -36,19 +33,15 @@ class Session {
   [[nodiscard]] double deltaSeconds() const { return deltaSeconds_; }
   /// Frame seconds since the start.
   [[nodiscard]] double wallSeconds() const { return timer_.total(); }
-  [[nodiscard]] bool isPlaying() const { return player_ && !player_->finished(); }
-  [[nodiscard]] bool hasPlayed() const { return player_ && player_->finished(); }
+  [[nodiscard]] bool hasPlayed() const { return application_.recording().hasPlayed(); }
 
  private:
   Session(Application& application, scripting::FrameTimer timer) : application_(application), timer_(timer) {}
-  Result<void> openPlayer(const Options& options);
-  Result<void> openRecorder(const Options& options);
 
   Application& application_;
   scripting::FrameTimer timer_;
-  std::optional<recording::Player> player_;
-  std::optional<recording::Recorder> recorder_;
   double deltaSeconds_ = 0.0;
+  bool isPlayed_ = false;  ///< a recording moved the camera in this frame
 };
 
 }  // namespace meridian::app

@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cassert>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -81,6 +83,8 @@ struct VideoEncoder::Implementation {
   std::unique_ptr<AVPacket, Freed<av_packet_free>> packet;
   std::unique_ptr<SwsContext, ScalerFreer> scaler;
   AVStream* stream = nullptr;
+  std::set<std::string> copyrights;
+  bool hasHeader = false;
 
   [[nodiscard]] tl::unexpected<Error> error(int code) const {
     return failure(fmt::format("the video cannot be written: {}", describe(code)), file.string(),
@@ -125,10 +129,21 @@ struct VideoEncoder::Implementation {
     if (const int code = avio_open(&format->pb, file.c_str(), AVIO_FLAG_WRITE); code < 0) {
       return error(code);
     }
-    if (const int code = avformat_write_header(format.get(), nullptr); code < 0) {
-      return error(code);
-    }
     return {};
+  }
+
+  Result<void> writeHeader() {
+    hasHeader = true;
+    const int code = avformat_write_header(format.get(), nullptr);
+    return code < 0 ? error(code) : Result<void>{};
+  }
+
+  void credit(const graphics::Image& picture) {
+    const auto found = picture.metadata.find("Copyright");
+    if (found != picture.metadata.end() && copyrights.insert(found->second).second) {
+      const std::string all = fmt::format("{}", fmt::join(copyrights, " | "));
+      av_dict_set(&format->metadata, "copyright", all.c_str(), 0);
+    }
   }
 
   Result<void> openFrame() {
@@ -208,6 +223,12 @@ Result<std::unique_ptr<VideoEncoder>> VideoEncoder::open(const std::filesystem::
 Result<void> VideoEncoder::add(const graphics::Image& picture) {
   Implementation& state = *implementation_;
   assert(picture.size.x >= state.codec->width && picture.size.y >= state.codec->height);
+  state.credit(picture);
+  if (!state.hasHeader) {
+    if (auto written = state.writeHeader(); !written) {
+      return written;
+    }
+  }
   // The encoder may still look at the last picture.
   if (const int code = av_frame_make_writable(state.frame.get()); code < 0) {
     return state.error(code);
@@ -222,6 +243,11 @@ Result<void> VideoEncoder::add(const graphics::Image& picture) {
 
 Result<void> VideoEncoder::finish() {
   Implementation& state = *implementation_;
+  if (!state.hasHeader) {
+    if (auto written = state.writeHeader(); !written) {
+      return written;
+    }
+  }
   if (auto flushed = state.encode(nullptr); !flushed) {
     return flushed;
   }

@@ -22,6 +22,8 @@ class VideoEncoder {
   /// Without finish the file is left as it is: cut off.
   ~VideoEncoder();
 
+  /// The "Copyright" in the pictures' metadata becomes the container's: of all pictures in .mp4 and .mov, which have it
+  /// at their end; of the first one in .mkv and .webm.
   [[nodiscard]] Result<void> add(const graphics::Image& picture);
   /// Flushes the encoder and writes the index; to be called once, at the end.
   [[nodiscard]] Result<void> finish();

@@ -1,5 +1,7 @@
 #include "host/assets/asset_loader.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "host/api/log.h"
@@ -62,6 +64,11 @@ struct AssetLoader::Private {
 
 AssetLoader::AssetLoader(scripting::ScriptEngine& engine, PathTokens& tokens, AssetTarget& target)
     : private_(std::make_unique<Private>(engine, tokens, target)) {
+  registerNodeFunctions(engine);
+  registerAssetFunctions(engine);
+}
+
+void AssetLoader::registerNodeFunctions(scripting::ScriptEngine& engine) {
   Private* self = private_.get();
   engine.registerLibrary(
       {"",
@@ -83,7 +90,24 @@ AssetLoader::AssetLoader(scripting::ScriptEngine& engine, PathTokens& tokens, As
            return textAt(a, 0).map(
                [&](const std::string& identifier) { return std::vector<Value>{self->target->hasNode(identifier)}; });
          }}}});
+}
 
+/// openspace.asset.parents.
+ScriptResult AssetLoader::parents(std::string_view path) const {
+  return private_->rootFile(path).map([&](const fs::path& file) {
+    const Asset* asset = private_->graph.find(file);
+    Table files;
+    for (const auto& each : private_->graph.assets()) {
+      if (std::find(each->required.begin(), each->required.end(), asset) != each->required.end()) {
+        files.list.emplace_back(each->file.string());
+      }
+    }
+    return std::vector<Value>{std::move(files)};
+  });
+}
+
+void AssetLoader::registerAssetFunctions(scripting::ScriptEngine& engine) {
+  Private* self = private_.get();
   // While an asset runs others cannot come and go: that waits for the next frame.
   const auto outsideAssets = [self](std::string_view name, Arguments a, auto act) -> ScriptResult {
     return textAt(a, 0).and_then([&](const std::string& path) -> ScriptResult {
@@ -112,6 +136,24 @@ AssetLoader::AssetLoader(scripting::ScriptEngine& engine, PathTokens& tokens, As
         {"remove", "path", "Removes an asset.", 1, 1,
          [this, outsideAssets](Arguments a) {
            return outsideAssets("remove", a, [this](const std::string& path) { return remove(path); });
+         }},
+        {"reload", "path", "Removes an asset and loads it again.", 1, 1,
+         [this, outsideAssets](Arguments a) {
+           return outsideAssets("reload", a, [this](const std::string& path) {
+             return remove(path).and_then([&] { return add(path); });
+           });
+         }},
+        {"removeAll", "", "Removes all assets.", 0, 0,
+         [this](Arguments) -> ScriptResult {
+           if (runsAsset()) {
+             return failure("openspace.asset.removeAll cannot be called by an asset that is being loaded");
+           }
+           removeAll();
+           return std::vector<Value>{};
+         }},
+        {"parents", "path", "The files of the assets that require an asset.", 1, 1,
+         [this](Arguments a) -> ScriptResult {
+           return textAt(a, 0).and_then([this](const std::string& path) { return parents(path); });
          }},
         {"isLoaded", "path", "Whether an asset is loaded.", 1, 1,
          [this](Arguments a) -> ScriptResult {
@@ -177,6 +219,10 @@ bool AssetLoader::isLoaded(std::string_view path) const {
 
 void AssetLoader::noteMissing(const fs::path& path) {
   private_->graph.noteMissing(path);
+}
+
+bool AssetLoader::runsAsset() const {
+  return private_->graph.running() != nullptr;
 }
 
 std::string AssetLoader::currentFolder() const {

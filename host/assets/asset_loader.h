@@ -62,9 +62,14 @@ class AssetLoader {
 
   /// Folder of the asset whose code runs now; ${ASSETS} outside of one.
   [[nodiscard]] std::string currentFolder() const;
+  /// Whether an asset's code runs now.
+  [[nodiscard]] bool runsAsset() const;
 
  private:
   struct Private;
+  void registerNodeFunctions(scripting::ScriptEngine& engine);
+  void registerAssetFunctions(scripting::ScriptEngine& engine);
+  [[nodiscard]] ScriptResult parents(std::string_view path) const;
   std::unique_ptr<Private> private_;
 };
 

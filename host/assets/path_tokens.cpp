@@ -61,10 +61,10 @@ PathTokens::PathTokens(const Paths& paths) {
                                       {"USER_SHOWCOMPOSER_UPLOADS", "user/showcomposer/uploads"},
                                       {"USER_SHOWCOMPOSER_PROJECTS", "user/showcomposer/projects"},
                                       {"USER_WEBPANELS", "user/webpanels"},
-                                      {"SCREENSHOTS", "user/screenshots"},
-                                      {"RECORDINGS", "user/recordings"}}) {
+                                      {"SCREENSHOTS", "user/screenshots"}}) {
     set(token, paths.data / folder);
   }
+  set("RECORDINGS", paths.sync / "recordings");  // scripts write them
   set("SHADERS", paths.shaders);
   set("LOGS", paths.temporary / "logs");
   // May lie elsewhere: a link to what was prepared in a cache that cannot be written.

@@ -17,7 +17,7 @@ class PathTokens {
  public:
   PathTokens() = default;
   /// ASSETS, SYNC, CACHE, TEMPORARY, DATA, SHADERS, LOGS, and the others of OpenSpace's configuration below DATA, such
-  /// as USER (DATA/user), SCRIPTS and GLOBEBROWSING.
+  /// as USER (DATA/user), SCRIPTS and GLOBEBROWSING; RECORDINGS is below SYNC.
   explicit PathTokens(const Paths& paths);
 
   /// `name` with or without "${" and "}"; `folder` is absolute.

@@ -158,10 +158,12 @@ Result<void> writePng(const std::filesystem::path& file, std::span<const std::ui
   std::vector<png_text> texts;
   for (auto& [key, value] : metadata) {
     png_text text{};
-    text.compression = PNG_TEXT_COMPRESSION_NONE;
+    const bool isAscii =
+        std::all_of(value.begin(), value.end(), [](char c) { return static_cast<signed char>(c) > 0; });
+    text.compression = isAscii ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
     text.key = const_cast<png_charp>(key.c_str());
     text.text = value.data();
-    text.text_length = value.size();
+    (isAscii ? text.text_length : text.itxt_length) = value.size();
     texts.push_back(text);
   }
   const std::filesystem::path part = file.string() + ".part";
@@ -218,7 +220,9 @@ Result<Image> readPng(const std::filesystem::path& file) {
   png_textp texts = nullptr;
   const int count = png_get_text(reader.png, reader.info, &texts, nullptr);
   for (int index = 0; index < count; ++index) {
-    image.metadata[texts[index].key] = std::string(texts[index].text, texts[index].text_length);
+    const png_text& text = texts[index];
+    image.metadata[text.key] =
+        std::string(text.text, text.compression >= PNG_ITXT_COMPRESSION_NONE ? text.itxt_length : text.text_length);
   }
   return image;
 }

@@ -13,7 +13,8 @@
 
 namespace meridian::graphics {
 
-/// Words kept in a picture (PNG tEXt): keys of 1 to 79 Latin-1 characters, such as "Software".
+/// Words kept in a picture (PNG tEXt, iTXt where they are not ASCII): UTF-8 by keys of 1 to 79 ASCII characters, such
+/// as "Software".
 using ImageMetadata = std::map<std::string, std::string>;
 
 /// RGBA, 8 bits each, rows from top to bottom without gaps.

@@ -39,6 +39,8 @@ const std::vector<ForeignFunctions>& foreignFunctions() {
        "addDashboardItem addDashboardItemToScreenSpace removeDashboardItem removeDashboardItemFromScreenSpace "
        "clearDashboardItems"},
       {"dashboard", "dashboards", "dashboardItems", Table{}},
+      {"sessionRecording", "pictures of a playback by scripts, --output writes them",
+       "enableTakeScreenShotDuringPlayback disableTakeScreenShotDuringPlayback"},
       {"scriptScheduler", "scheduled scripts",
        "loadFile loadScheduledScript setModeApplicationTime setModeRecordedTime "
        "setModeSimulationTime clear"},

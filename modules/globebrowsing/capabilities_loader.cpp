@@ -1,5 +1,6 @@
 #include "globebrowsing/capabilities_loader.h"
 
+#include <algorithm>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 #include "globebrowsing/source/capabilities.h"
 #include "globebrowsing/source/document_file.h"
 #include "globebrowsing/source/service_asset.h"
+#include "globebrowsing/source/service_text.h"
 
 namespace meridian::globebrowsing {
 
@@ -16,7 +18,47 @@ namespace {
 /// Before every tile: somebody waits for it.
 constexpr double documentPriority = 1e9;
 
-/// Layers that an asset can name.
+/// What an asset can say of the layer: a table for each style.
+Result<std::vector<OfferedLayer::Style>> stylesOf(const Capabilities& capabilities, const CapabilitiesLayer& layer,
+                                                  const std::string& globe) {
+  std::vector<OfferedLayer::Style> styles;
+  const std::size_t count = std::max<std::size_t>(layer.styles.size(), 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    LayerChoices choices;
+    choices.style = i == 0 ? std::string() : layer.styles[i].identifier;
+    Result<LayerAsset> asset = assetOf(capabilities, layer, choices, {globe});
+    if (!asset) {
+      return tl::make_unexpected(std::move(asset.error()));
+    }
+    std::string name = layer.styles.empty()            ? "default"
+                       : layer.styles[i].title.empty() ? layer.styles[i].identifier
+                                                       : layer.styles[i].title;
+    styles.push_back({std::move(name), std::move(asset->table)});
+  }
+  return styles;
+}
+
+OfferedLayer offeredLayer(const Capabilities& capabilities, const CapabilitiesLayer& layer, const std::string& globe) {
+  OfferedLayer offered;
+  offered.name = layer.title.empty() ? layer.identifier : layer.title;
+  offered.obstacle = layer.obstacle;
+  offered.extent = layer.extent;
+  offered.times = layer.timeDimension() != nullptr ? layer.timeDimension()->values : std::string();
+  offered.attribution = creditText(layer.attribution.empty() ? capabilities.attribution : layer.attribution);
+  if (!offered.obstacle.empty()) {
+    return offered;
+  }
+  Result<std::vector<OfferedLayer::Style>> styles = stylesOf(capabilities, layer, globe);
+  if (!styles) {
+    offered.obstacle = styles.error().what;
+    return offered;
+  }
+  offered.styles = std::move(*styles);
+  offered.url = *offered.styles.front().table.find("FilePath")->string();
+  return offered;
+}
+
+/// All layers but headings.
 MapServers::Offer offerOf(const Fetched& document, const MapServer& server) {
   if (document.body == nullptr) {
     return failure("there are no capabilities at that address", server.url, "check the address");
@@ -24,13 +66,8 @@ MapServers::Offer offerOf(const Fetched& document, const MapServer& server) {
   return parseCapabilities(*document.body, server.url).map([&](const Capabilities& capabilities) {
     std::vector<OfferedLayer> offered;
     for (const CapabilitiesLayer& layer : capabilities.layers) {
-      if (layer.identifier.empty() || !layer.obstacle.empty()) {
-        continue;
-      }
-      const Result<LayerAsset> asset = assetOf(capabilities, layer, {}, {server.globe});
-      const Value* filePath = asset ? asset->table.find("FilePath") : nullptr;
-      if (filePath != nullptr && filePath->string() != nullptr) {
-        offered.push_back({layer.title.empty() ? layer.identifier : layer.title, *filePath->string()});
+      if (!layer.identifier.empty()) {
+        offered.push_back(offeredLayer(capabilities, layer, server.globe));
       }
     }
     return offered;

@@ -32,13 +32,15 @@ ScriptResult capabilities(const MapServers& servers, Arguments arguments) {
   if (!name) {
     return tl::make_unexpected(name.error());
   }
-  const MapServers::Offer offer = servers.offered(*name);
+  const MapServers::Offer& offer = servers.offered(*name);
   Table list;
   if (!offer) {
-    log::warning("capabilitiesWMS: {}", offer.error().message());
+    log::warning("capabilitiesWMS: {}: {}", *name, offer.error().message());
   } else {
     for (const OfferedLayer& layer : *offer) {
-      list.list.emplace_back(Table{{}, {{"Name", layer.name}, {"URL", layer.url}}});
+      if (!layer.url.empty()) {
+        list.list.emplace_back(Table{{}, {{"Name", layer.name}, {"URL", layer.url}}});
+      }
     }
   }
   return std::vector<Value>{std::move(list)};

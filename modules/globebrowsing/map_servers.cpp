@@ -11,7 +11,9 @@ void MapServers::add(MapServer server) {
   const unsigned generation = ++generation_;
   Offer notYet = failure(loader_ ? "its capabilities have not arrived yet" : "capabilities are not loaded", server.url,
                          loader_ ? "ask again" : "write the layer's FilePath into an asset");
-  Known& known = servers_.insert_or_assign(name, Known{std::move(server), std::move(notYet), generation}).first->second;
+  Known& known =
+      servers_.insert_or_assign(name, Known{std::move(server), std::move(notYet), loader_ != nullptr, generation})
+          .first->second;
   if (!loader_) {
     return;
   }
@@ -25,6 +27,7 @@ void MapServers::add(MapServer server) {
       log::error("map server {}: {}", name, offer.error().message());
     }
     found->second.offer = std::move(offer);
+    found->second.isLoading = false;
   });
 }
 
@@ -42,6 +45,19 @@ const MapServer* MapServers::find(std::string_view name) const {
   return found == servers_.end() ? nullptr : &found->second.server;
 }
 
+std::vector<MapServer> MapServers::all() const {
+  std::vector<MapServer> found;
+  for (const auto& [name, known] : servers_) {
+    found.push_back(known.server);
+  }
+  return found;
+}
+
+bool MapServers::isLoading(std::string_view name) const {
+  const auto found = servers_.find(name);
+  return found != servers_.end() && found->second.isLoading;
+}
+
 std::vector<MapServer> MapServers::of(std::string_view globe) const {
   std::vector<MapServer> found;
   for (const auto& [name, known] : servers_) {
@@ -52,10 +68,12 @@ std::vector<MapServer> MapServers::of(std::string_view globe) const {
   return found;
 }
 
-MapServers::Offer MapServers::offered(std::string_view name) const {
+const MapServers::Offer& MapServers::offered(std::string_view name) const {
   const auto found = servers_.find(name);
   if (found == servers_.end()) {
-    return failure("there is no map server \"" + std::string(name) + '"', {}, "name it with loadWMSCapabilities first");
+    static const Offer unknown =
+        failure("there is no map server of that name", {}, "name it with loadWMSCapabilities first");
+    return unknown;
   }
   return found->second.offer;
 }

@@ -2,11 +2,14 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "globebrowsing/source/map_crs.h"
 #include "host/api/error.h"
+#include "host/api/value.h"
 
 namespace meridian::globebrowsing {
 
@@ -17,10 +20,19 @@ struct MapServer {
   std::string url;  ///< of its capabilities, as given
 };
 
-/// A layer that a server offers: `url` is what an asset writes as `FilePath`.
+/// A layer that a server offers.
 struct OfferedLayer {
   std::string name;
-  std::string url;
+  std::string url;                 ///< what an asset writes as `FilePath`; empty: it cannot be shown
+  std::string obstacle{};          ///< why not
+  std::optional<Extent> extent{};  ///< radians
+  std::string times{};             ///< values and intervals, as the service lists them
+  std::string attribution{};
+  struct Style {
+    std::string name;
+    Value table;  ///< the layer's, for addLayer
+  };
+  std::vector<Style> styles{};  ///< the service's default first; at least one of a layer that can be shown
 };
 
 /// The servers by name, and what they offer as far as that is known. Render thread only.
@@ -39,15 +51,21 @@ class MapServers {
   /// Whether there was one.
   bool remove(std::string_view name);
   [[nodiscard]] const MapServer* find(std::string_view name) const;
+  /// All, in alphabetical order.
+  [[nodiscard]] std::vector<MapServer> all() const;
   /// Of that globe, in alphabetical order.
   [[nodiscard]] std::vector<MapServer> of(std::string_view globe) const;
-  /// What the server offers. Errors: no such server; not loaded yet; why it could not be.
-  [[nodiscard]] Offer offered(std::string_view name) const;
+  /// What the server offers; good until servers change or answer. Errors: no such server; not loaded yet; why it could
+  /// not be.
+  [[nodiscard]] const Offer& offered(std::string_view name) const;
+  /// Whether its capabilities are on their way.
+  [[nodiscard]] bool isLoading(std::string_view name) const;
 
  private:
   struct Known {
     MapServer server;
     Offer offer;
+    bool isLoading = false;
     unsigned generation = 0;  ///< so that answers for a former server of the name are dropped
   };
   Loader loader_;

@@ -2,6 +2,7 @@
 
 #include "globebrowsing/globe_services.h"
 #include "globebrowsing/layer_panel.h"
+#include "globebrowsing/map_server_panel.h"
 #include "globebrowsing/map_servers.h"
 #include "globebrowsing/renderable_globe.h"
 #include "globebrowsing/script_library.h"
@@ -24,6 +25,7 @@ class GlobeBrowsingModule final : public Module {
     });
     host.registerScriptLibrary(makeScriptLibrary(host, servers_));
     host.registerPanel(std::make_unique<LayerPanel>(host));
+    host.registerPanel(std::make_unique<MapServerPanel>(host, servers_));
     return {};
   }
 

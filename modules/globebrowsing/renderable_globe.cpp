@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "globebrowsing/chunks/culling.h"
 #include "globebrowsing/surface/chunked_surface.h"
 #include "globebrowsing/tiling/geodetic_tiling.h"
 #include "host/api/log.h"
@@ -153,6 +154,14 @@ double RenderableGlobe::apparentRadius(const FrameContext& frame) const {
   return largest;
 }
 
+bool RenderableGlobe::isInView(const FrameContext& frame) const {
+  OrientedBox box;
+  box.half = radii();
+  return std::any_of(frame.views.begin(), frame.views.end(), [&](const View& view) {
+    return Frustum(view.clipFromCamera * view.cameraFromModel).touches(box);
+  });
+}
+
 GlobeTiles::Options RenderableGlobe::poolOptions(TexturePoolShares::Share share) const {
   std::size_t most = 1;
   for (const CompositeKind kind : allCompositeKinds) {
@@ -241,6 +250,7 @@ void RenderableGlobe::update(const FrameContext& frame) {
   services_.enterFrame(frame.number);
   const double radius = apparentRadius(frame);
   drawn_ = graphics_ != nullptr && enabled.get() && opacity.get() > 0.0 && (renderAtDistance.get() || radius >= 0.5);
+  inView_ = drawn_ && isInView(frame);
   if (drawn_) {
     framesUnseen_ = 0;
     layers_.update(frame.time);
@@ -262,7 +272,21 @@ void RenderableGlobe::draw(const FrameContext& frame, std::size_t view) {
   }
 }
 
-Result<void> RenderableGlobe::addLayer(const std::string& group, const ProviderRequest& request) {
+void RenderableGlobe::addAttributions(std::vector<std::string_view>& list) const {
+  if (!inView_) {
+    return;
+  }
+  for (const LayerGroupId id : allLayerGroups) {
+    for (const Layer* layer : layers_.group(id).enabledLayers()) {
+      const std::string_view text = layer->attribution.get();
+      if (!text.empty() && layer->effectiveOpacity() > 0.0 && std::find(list.begin(), list.end(), text) == list.end()) {
+        list.push_back(text);
+      }
+    }
+  }
+}
+
+Result<void> RenderableGlobe::addLayer(const std::string& group, const ProviderRequest& request, bool isUsers) {
   const std::optional<NamedGroup> named = layerGroupFromName(group);
   const Value* identifier = request.table.find("Identifier");
   const bool isTaken = named && identifier != nullptr && identifier->string() != nullptr &&
@@ -274,6 +298,9 @@ Result<void> RenderableGlobe::addLayer(const std::string& group, const ProviderR
   const Result<Layer*> added = layers_.addLayer(group, request);
   if (!added && !named) {
     return tl::make_unexpected(added.error());
+  }
+  if (added && isUsers) {
+    (*added)->setUsers();
   }
   if (!added) {
     log::error("{}", added.error().message());

@@ -31,8 +31,9 @@ class RenderableGlobe final : public Renderable, public Ground {
 
   [[nodiscard]] LayerManager& layers() { return layers_; }
   /// Adds a layer by its table, as scripts do: one that is wrong is logged, kept in layerErrors() and left out, and an
-  /// identifier that the group has is left out with a note in the log. Errors: an unknown group.
-  Result<void> addLayer(const std::string& group, const ProviderRequest& request);
+  /// identifier that the group has is left out with a note in the log. `isUsers`: rather than an asset's. Errors: an
+  /// unknown group.
+  Result<void> addLayer(const std::string& group, const ProviderRequest& request, bool isUsers = false);
   [[nodiscard]] const std::vector<Error>& layerErrors() const { return layerErrors_; }
   /// Whether addLayer left out a layer of that name because its table was wrong.
   [[nodiscard]] bool wasRefused(const std::string& identifier) const { return refused_.count(identifier) != 0; }
@@ -43,6 +44,7 @@ class RenderableGlobe final : public Renderable, public Ground {
   void draw(const FrameContext& frame, std::size_t view) override;
   [[nodiscard]] double boundingSphere() const override { return tiling_->ellipsoid().maximumRadius(); }
   [[nodiscard]] Ground* ground() override { return this; }
+  void addAttributions(std::vector<std::string_view>& list) const override;
   [[nodiscard]] Contents contents() const override;
 
   [[nodiscard]] glm::dvec3 radii() const override { return tiling_->ellipsoid().radii(); }
@@ -85,6 +87,7 @@ class RenderableGlobe final : public Renderable, public Ground {
   Result<void> load(const RenderableRequest& request);
   /// In pixels, of the view that shows it largest.
   [[nodiscard]] double apparentRadius(const FrameContext& frame) const;
+  [[nodiscard]] bool isInView(const FrameContext& frame) const;
   [[nodiscard]] SurfaceSettings settings() const;
   [[nodiscard]] GlobeTiles::Options poolOptions(TexturePoolShares::Share share) const;
   [[nodiscard]] std::unique_ptr<Surface> makeSurface(const GlobeTiles::Options& pool);
@@ -105,6 +108,7 @@ class RenderableGlobe final : public Renderable, public Ground {
   GlobeTiles::Options replacementPool_;
   std::string surfaceError_;  ///< why there can be no surface
   bool drawn_ = false;        ///< in this frame
+  bool inView_ = false;       ///< likewise: drawn, and not beside the picture
   int framesUnseen_ = 0;
 };
 

@@ -67,7 +67,8 @@ Result<void> addLayerFromScript(Host& host, const Value& node, const std::string
   return globe(host, node).and_then([&](RenderableGlobe* found) {
     Host::ScriptPlace place = host.scriptPlace();
     return found->addLayer(
-        group, {withTokensReplaced(host, table), std::move(place.where), "addLayer " + group, std::move(place.folder)});
+        group, {withTokensReplaced(host, table), std::move(place.where), "addLayer " + group, std::move(place.folder)},
+        !place.isAsset);
   });
 }
 

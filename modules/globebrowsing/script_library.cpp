@@ -8,6 +8,7 @@
 
 #include "globebrowsing/geo_json_scripts.h"
 #include "globebrowsing/gibs.h"
+#include "globebrowsing/layers_file.h"
 #include "globebrowsing/map_server_scripts.h"
 #include "globebrowsing/patch_scripts.h"
 #include "globebrowsing/script_arguments.h"
@@ -129,8 +130,8 @@ ScriptLibrary makeScriptLibrary(Host& host, MapServers& servers) {
         "Moves a layer to another's place; layers by identifier or by place from 0", 4, 4, bind(moveLayer)},
        {"globes", "", "{ identifiers of all globes, place of the first whose servers are not known }", 0, 0,
         [&host, &servers](Arguments) { return globes(host, servers); }}}};
-  for (auto&& functions :
-       {gibsFunctions(host), mapServerFunctions(host, servers), patchFunctions(host), geoJsonFunctions(host)}) {
+  for (auto&& functions : {gibsFunctions(host), mapServerFunctions(host, servers), patchFunctions(host),
+                           geoJsonFunctions(host), layersFileFunctions(host)}) {
     library.functions.insert(library.functions.end(), functions.begin(), functions.end());
   }
   return library;

@@ -17,7 +17,7 @@ float sunGlint(vec3 normal, vec3 toEye, vec3 toSun) {
     float squared = tilt * tilt;
     float density = exp((squared - 1.0) / (squared * slopeVariance)) / (slopeVariance * squared * squared);
     float unmasked = min(1.0, 2.0 * tilt * min(eye, sun) / incidence);
-    float fresnel = reflectanceAlongNormal + (1.0 - reflectanceAlongNormal) * pow(1.0 - incidence, 5.0);
+    float fresnel = reflectanceAlongNormal + (1.0 - reflectanceAlongNormal) * pow(max(1.0 - incidence, 0.0), 5.0);
     return fresnel * density * unmasked / (4.0 * eye);
 }
 

@@ -134,6 +134,7 @@ class Flight : public ::testing::Test {
     fs::create_directories(folder_.parent_path());
     const std::string command = fmt::format(
         "timeout 250 '{}' --headless --play '{}' --frames {} --fps {} --size {}x{} {} "
+        "--set RenderEngine.ShowAttribution=false "
         "--output '{}' 2>'{}.log'",
         MERIDIAN_PROGRAM, flightFile().string(), sampling.frames, 1.0 / sampling.step, pictureSize.x, pictureSize.y,
         arguments, folder_.string(), folder_.string());

@@ -138,16 +138,23 @@ TEST_F(ServerDownTest, WhatIsOnDiskIsDrawnWithoutTheServer) {
   expectRaster(stage, stage.open(document()), 2);
 }
 
-TEST_F(ServerDownTest, CapabilitiesThatCannotBeHadAreAnErrorAtOnce) {
+TEST_F(ServerDownTest, CapabilitiesAreWaitedForAndThenReadOrNot) {
   ServiceStage stage;
   const auto layer = stage.make({{"FilePath", "WMTS:http://127.0.0.1:" + std::to_string(port) + "/a.xml,layer=a"}});
   TileProvider::openOn(stage.workers, layer);
   EXPECT_EQ(layer->state(), TileProvider::State::Opening);
+  while (!layer->lastFailure()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_THAT(layer->lastFailure()->message(), HasSubstr("127.0.0.1"));
+  EXPECT_EQ(layer->state(), TileProvider::State::Opening);
+  const auto server = start();  // which has no such file
   while (layer->state() == TileProvider::State::Opening) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   ASSERT_EQ(layer->state(), TileProvider::State::Failed);
-  EXPECT_THAT(layer->error()->message(), HasSubstr("127.0.0.1"));
+  EXPECT_THAT(layer->error()->message(), HasSubstr("a.xml"));
+  EXPECT_FALSE(layer->lastFailure());
 }
 
 TEST_F(ServerDownTest, NothingIsAnsweredOnceTheNetworkHasEnded) {

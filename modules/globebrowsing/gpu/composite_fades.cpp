@@ -14,10 +14,14 @@ constexpr double endOfMixing = 6.0;
 }  // namespace
 
 void CompositeStore::updateFading() {
-  const bool goesOn = fading_ && (of(*fading_).fade.moves() || drewMixed_);
+  const bool goesOn = fading_ && !interpolates_ && (of(*fading_).fade.moves() || drewMixed_);
   mixedLast_ = drewMixed_;
   drewMixed_ = false;
   if (!goesOn) {
+    fading_ = kindBetweenSteps();
+    interpolates_ = fading_.has_value();
+  }
+  if (!goesOn && !interpolates_) {
     const auto found = std::find_if(allCompositeKinds.begin(), allCompositeKinds.end(),
                                     [this](CompositeKind kind) { return of(kind).fade.mixes(); });
     fading_ = found == allCompositeKinds.end() ? std::nullopt : std::optional(*found);
@@ -28,7 +32,7 @@ void CompositeStore::updateFading() {
 }
 
 std::optional<CompositeStore::Mixture> CompositeStore::mixture(const CompositeKey& key) const {
-  if (mixing_ != key.kind) {
+  if (mixing_ != key.kind || interpolates_) {
     return std::nullopt;
   }
   const std::optional<std::uint32_t> slot = slots_.peek(key);
@@ -52,7 +56,7 @@ std::optional<CompositeStore::Mixture> CompositeStore::mixture(const CompositeKe
 std::optional<LayerOpacity> CompositeStore::otherEnd(const CompositeKey& key) const {
   const KindState& state = of(key.kind);
   const std::optional<std::uint32_t> slot = slots_.peek(key);
-  if (mixing_ != key.kind || !state.fade.moves() || state.noRoomToFade || state.hasNext || !slot ||
+  if (mixing_ != key.kind || !state.fade.moves() || state.noRoomToFade || interpolates_ || state.hasNext || !slot ||
       slotContents_[*slot].stamp != state.shown.stamp) {
     return std::nullopt;
   }

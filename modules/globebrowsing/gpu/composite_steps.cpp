@@ -34,49 +34,65 @@ bool isOnTheWay(const LayerStepPointer& from, const LayerStepPointer& step, cons
 /// Layers came, went or were changed: those that stay also stay at the step that is drawn.
 void CompositeStore::takeSteps(KindState& state) {
   const std::vector<Layer*>& enabled = state.layers;
-  std::vector<LayerStepPointer> steps;
-  for (const Layer* layer : enabled) {
-    const auto drawn = std::find_if(state.shown.steps.begin(), state.shown.steps.end(), [layer](const auto& step) {
-      return step != nullptr && step->source() == layer->provider().get();
-    });
-    steps.push_back(drawn != state.shown.steps.end() ? *drawn : layer->step());
+  takeSteps(state, state.shown);
+  if (state.pair.isMixed) {
+    takeSteps(state, state.next);  // it is drawn, and brought up to date like the shown one
+    return;
   }
-  state.shown.steps = std::move(steps);
   // What of the next step was composed before the change will do, and is composed anew after the exchange.
-  state.hasNext = state.hasNext && state.next.steps.size() == enabled.size() &&
-                  std::equal(enabled.begin(), enabled.end(), state.next.steps.begin(),
-                             [](const Layer* layer, const LayerStepPointer& step) {
-                               return step == nullptr || step->source() == layer->provider().get();
-                             });
+  const bool isOfThese = std::equal(enabled.begin(), enabled.end(), state.next.steps.begin(), state.next.steps.end(),
+                                    [](const Layer* layer, const LayerStepPointer& step) {
+                                      return step == nullptr || step->source() == layer->provider().get();
+                                    });
+  if (!isOfThese) {
+    dropNext(state);
+  }
 }
 
-void CompositeStore::beginNext(KindState& state) {
-  const std::vector<Layer*>& enabled = state.layers;
+void CompositeStore::takeSteps(KindState& state, Generation& generation) {
+  std::vector<LayerStepPointer> steps;
+  bool comesWithSteps = false;
+  for (const Layer* layer : state.layers) {
+    const auto drawn = std::find_if(generation.steps.begin(), generation.steps.end(), [layer](const auto& step) {
+      return step != nullptr && step->source() == layer->provider().get();
+    });
+    const bool isNew = drawn == generation.steps.end();
+    steps.push_back(isNew ? layer->step() : *drawn);
+    // A layer that comes back may find composites of its own, of another step.
+    comesWithSteps = comesWithSteps || (isNew && layer->provider()->steps() != nullptr);
+  }
+  generation.steps = std::move(steps);
+  if (comesWithSteps) {
+    generation.stamp = ++state.lastStamp;
+  }
+}
+
+void CompositeStore::beginNext(CompositeKind kind) {
+  KindState& state = of(kind);
+  keepPair(kind);
+  // Of two steps that are to be mixed, the one that is not drawn yet.
+  const bool toOther = isInterpolated(kind) && isOf(state, state.shown, false);
   if (state.hasNext) {
     // What is on the way to the present step is finished first, or a time that runs faster would never show any.
     bool onTheWay = true;
-    for (std::size_t i = 0; i < enabled.size(); ++i) {
-      onTheWay = onTheWay && isOnTheWay(state.shown.steps[i], state.next.steps[i], enabled[i]->step());
+    for (std::size_t i = 0; i < state.layers.size(); ++i) {
+      onTheWay = onTheWay && isOnTheWay(state.shown.steps[i], state.next.steps[i], stepOf(state, i, toOther));
     }
     if (onTheWay) {
       return;
     }
-    state.hasNext = false;
+    dropNext(state);
   }
   // Where nothing is drawn the last step is finished first as well, or a surface that is still filled never would be.
   if (state.drawn.empty() && lackedSome_) {
     return;
   }
-  const auto isOther = [](const Layer* layer, const LayerStepPointer& step) {
-    return layer->step() != nullptr && layer->step() != step;
-  };
-  if (std::equal(enabled.begin(), enabled.end(), state.shown.steps.begin(),
-                 [&](const Layer* layer, const LayerStepPointer& step) { return !isOther(layer, step); })) {
+  if (isOf(state, state.shown, toOther)) {
     return;
   }
   state.next.steps.clear();
-  for (std::size_t i = 0; i < enabled.size(); ++i) {
-    state.next.steps.push_back(enabled[i]->step() != nullptr ? enabled[i]->step() : state.shown.steps[i]);
+  for (std::size_t i = 0; i < state.layers.size(); ++i) {
+    state.next.steps.push_back(stepOf(state, i, toOther));
   }
   state.next.side = state.shown.side == 0 ? 1 : 0;
   state.next.since = state.next.stamp = ++state.lastStamp;
@@ -85,16 +101,24 @@ void CompositeStore::beginNext(KindState& state) {
   state.nextOwnerLevels.clear();
 }
 
+void CompositeStore::dropNext(KindState& state) {
+  state.next.steps.clear();
+  state.hasNext = false;
+  if (state.pair.isPair) {
+    state.pair = {};
+    facts_.clear();
+  }
+}
+
 void CompositeStore::exchange(KindState& state) {
-  if (state.crowded) {
+  if (state.crowded && !state.pair.isMixed) {
     // Without room for both, the new ones are composed over the old.
     state.shown.steps.swap(state.next.steps);
     state.shown.stamp = ++state.lastStamp;
   } else {
     std::swap(state.shown, state.next);
   }
-  state.next.steps.clear();
-  state.hasNext = false;
+  dropNext(state);
   facts_.clear();
 }
 
@@ -102,7 +126,7 @@ bool CompositeStore::nextCovers(CompositeKind kind) const {
   const KindState& state = of(kind);
   for (int root = 0; root < tiling_->rootCount(); ++root) {
     const TileIndex index{static_cast<std::uint8_t>(root), 0, 0, 0};
-    if (!state.drawn.empty() && !stateOf(nextKey(kind, index, 0)).present) {
+    if ((!state.drawn.empty() || state.pair.isHeld) && !stateOf(nextKey(kind, index, 0)).present) {
       return false;
     }
   }
@@ -153,6 +177,9 @@ std::uint8_t CompositeStore::nextOwnerLevel(CompositeKind kind, const TileIndex&
   if (const auto found = state.nextOwnerLevels.find(index); found != state.nextOwnerLevels.end()) {
     return found->second;
   }
+  if (state.nextOwnerLevels.size() > mostFacts) {
+    state.nextOwnerLevels.clear();
+  }
   const std::optional<TileIndex> parent = tiling_->parent(index);
   const bool own = !parent || anyFiner(kind, state.next, *parent);
   const std::uint8_t level = own ? index.level : nextOwnerLevel(kind, *parent);
@@ -161,7 +188,9 @@ std::uint8_t CompositeStore::nextOwnerLevel(CompositeKind kind, const TileIndex&
 }
 
 CompositeKey CompositeStore::nextKey(CompositeKind kind, const TileIndex& index, int colourLevel) const {
-  const int level = std::min<int>(colourLevel, nextOwnerLevel(kind, index));
+  const int ownerLevel =
+      of(kind).pair.isPair ? facts(index).ownerLevel[static_cast<std::size_t>(kind)] : nextOwnerLevel(kind, index);
+  const int level = std::min(colourLevel, ownerLevel);
   return {kind, ancestor(index, level), of(kind).next.side};
 }
 

@@ -11,8 +11,6 @@ namespace meridian::globebrowsing {
 
 namespace {
 
-/// Facts of tiles long gone are dropped when there are that many.
-constexpr std::size_t mostFacts = 1 << 15;
 /// Less for what is drawn and will be exchanged soon.
 constexpr double soonReplaced = 4.0;
 /// Less for what is there, and not drawn, as roots: who changes a layer wants to see that.
@@ -65,6 +63,12 @@ void CompositeStore::beginFrame(std::uint64_t frame) {
     facts_.clear();
   }
   updateFading();
+  for (const CompositeKind kind : allCompositeKinds) {
+    if (of(kind).hasSteps || of(kind).hasNext) {
+      beginNext(kind);
+      weighPair(kind);
+    }
+  }
 }
 
 std::uint64_t CompositeStore::settingsVersion(CompositeKind kind) const {
@@ -85,8 +89,9 @@ bool CompositeStore::updateKind(CompositeKind kind) {
   }
   const bool coloursHeights = std::any_of(state.layers.begin(), state.layers.end(),
                                           [](const Layer* layer) { return isRelief(layer->sampling()); });
-  if (const std::uint32_t stream = coloursHeights ? relief_.stream() : 0; state.reliefStream != stream) {
-    state.reliefStream = stream;
+  // What a layer that comes or goes changes, its version tells.
+  if (coloursHeights && state.reliefStream != relief_.stream()) {
+    state.reliefStream = relief_.stream();
     state.shown.stamp = ++state.lastStamp;
     state.next.stamp = ++state.lastStamp;  // what there is of it will do, and is composed anew after the exchange
     changed = true;
@@ -98,9 +103,7 @@ bool CompositeStore::updateKind(CompositeKind kind) {
   }
   state.hasSteps = std::any_of(state.layers.begin(), state.layers.end(),
                                [](const Layer* layer) { return layer->provider()->steps() != nullptr; });
-  if (state.hasSteps) {
-    beginNext(state);
-  }
+  updateInterpolation(state);
   return changed;
 }
 
@@ -133,10 +136,18 @@ bool CompositeStore::anyFiner(CompositeKind kind, const Generation& generation, 
   return false;
 }
 
+bool CompositeStore::anyFiner(CompositeKind kind, const TileIndex& index) const {
+  const KindState& state = of(kind);
+  return anyFiner(kind, state.shown, index) || (state.pair.isPair && anyFiner(kind, state.next, index));
+}
+
 bool CompositeStore::isFiner(const Layer& layer, const LayerStepPointer& step, const TileIndex& index) const {
   if (isRelief(layer.sampling())) {
-    // Lines are as thin as the composite lets them be, however coarse the heights are.
-    return layer.sampling() == Sampling::Isolines ? index.level < maximumLevel : relief_.hasFiner(index);
+    // Lines are as thin as the composite lets them be, however coarse the heights are, as long as their slope tells
+    // where they are.
+    constexpr int levelsOfLines = 6;
+    const int coarser = layer.sampling() == Sampling::Isolines ? levelsOfLines : 0;
+    return index.level < coarser || relief_.hasFiner(ancestor(index, index.level - coarser));
   }
   return isTile(layer) && step != nullptr && step->tiles()->hasFinerColours(*tiling_, index);
 }
@@ -150,9 +161,9 @@ const CompositeStore::Facts& CompositeStore::facts(const TileIndex& index) const
   for (const CompositeKind kind : allCompositeKinds) {
     const auto i = static_cast<std::size_t>(kind);
     // The tile's own composite is worth having only where it shows more than its parent's.
-    const bool own = !parent || anyFiner(kind, of(kind).shown, *parent);
+    const bool own = !parent || anyFiner(kind, *parent);
     made.ownerLevel[i] = own ? index.level : facts(*parent).ownerLevel[i];
-    made.finer = made.finer || (inUse(kind) && anyFiner(kind, of(kind).shown, index));
+    made.finer = made.finer || (inUse(kind) && anyFiner(kind, index));
   }
   return facts_.emplace(index, made).first->second;
 }
@@ -199,8 +210,11 @@ CompositeStore::State CompositeStore::state(const TileIndex& index, int colourLe
   State all;
   for (const CompositeKind kind : allCompositeKinds) {
     if (inUse(kind)) {
-      const State one = stateOf(shownKey(kind, index, colourLevel));
-      all = {all.present && one.present, all.current && one.current};
+      const CompositeKey key = shownKey(kind, index, colourLevel);
+      all &= stateOf(key);
+      if (const std::optional<CompositeKey> other = pairedKey(key)) {
+        all &= stateOf(*other);
+      }
     }
   }
   return all;
@@ -210,8 +224,11 @@ CompositeStore::State CompositeStore::want(const TileIndex& index, int colourLev
   State all;
   for (const CompositeKind kind : allCompositeKinds) {
     if (inUse(kind)) {
-      const State one = wantComposite(shownKey(kind, index, colourLevel), priority);
-      all = {all.present && one.present, all.current && one.current};
+      const CompositeKey key = shownKey(kind, index, colourLevel);
+      all &= wantComposite(key, priority);
+      if (const std::optional<CompositeKey> other = pairedKey(key)) {
+        all &= wantComposite(*other, priority);
+      }
     }
   }
   return all;
@@ -231,10 +248,11 @@ CompositeStore::State CompositeStore::wantComposite(const CompositeKey& key, dou
   }
   // What of the next step is there already is brought up to date after the exchange: settings that change all the time
   // would put that off for ever.
-  if (state.current || (isNext && state.present)) {
+  const Pair& pair = of(key.kind).pair;
+  if (state.current || (isNext && state.present && !pair.isMixed)) {
     return state;
   }
-  if (state.present && of(key.kind).hasNext) {
+  if (state.present && of(key.kind).hasNext && !pair.isPair) {
     priority -= soonReplaced;
   }
   if (state.present && slotContents_[*slots_.peek(key)].drawn + 1 < frame_) {
@@ -255,7 +273,7 @@ void CompositeStore::request(Request request, const LayerOpacity& other) {
     return;
   }
   const bool isNext = &generationOf(request.key) == &state.next;
-  request.isMissing = request.isMissing && !isNext;
+  request.isMissing = request.isMissing && (!isNext || state.pair.isMixed);
   missing_ += request.isMissing ? 1 : 0;
   if (composer_->ready(request.key.kind) && !state.opening.waits()) {
     request.firstPart = parts_.size();
@@ -319,6 +337,9 @@ void CompositeStore::keep(const TileIndex& index, int colourLevel) {
     if (inUse(kind)) {
       const CompositeKey key = shownKey(kind, index, colourLevel);
       slots_.use(key, frame_);
+      if (const std::optional<CompositeKey> other = pairedKey(key)) {
+        slots_.use(*other, frame_);
+      }
       if (mixture(key)) {
         useOther(key, frame_);
       }
@@ -357,7 +378,7 @@ void CompositeStore::compose(double milliseconds) {
   for (const CompositeKind kind : allCompositeKinds) {
     KindState& state = of(kind);
     if (state.hasNext && (state.crowded || nextCovers(kind))) {
-      exchange(state);
+      endNext(state);
     }
     state.wasDrawn = !state.drawn.empty();
     state.drawn.clear();
@@ -367,7 +388,9 @@ void CompositeStore::compose(double milliseconds) {
 void CompositeStore::noteFull(const Request& request) {
   KindState& state = of(request.key.kind);
   // Second composites only use what room there is.
-  if (mixing_ && (request.key.side == CompositeKey::fadeSide || mixedLast_)) {
+  if (interpolates_ && of(*fading_).pair.isPair) {
+    of(*fading_).crowded = true;
+  } else if (mixing_ && (request.key.side == CompositeKey::fadeSide || mixedLast_)) {
     of(*mixing_).noRoomToFade = true;
   } else if (&generationOf(request.key) == &state.next) {
     state.crowded = true;
@@ -411,24 +434,36 @@ std::optional<CompositeStore::Placement> CompositeStore::place(CompositeKind kin
   UnitSquareTransform transform;
   TileIndex at = index;
   const int ownerLevel = std::min<int>(colourLevel, facts(index).ownerLevel[static_cast<std::size_t>(kind)]);
+  std::optional<Placement> alone;  // of the nearest tile that has one of two composites to be mixed
   while (true) {
     if (at.level <= ownerLevel) {
-      // What this frame draws must still be there when the next composes, or chunks without a composite would flicker.
       const CompositeKey key{kind, at, state.shown.side};
-      const std::optional<std::uint32_t> slot = slots_.peek(key);
-      if (slot && slotContents_[*slot].stamp >= state.shown.since) {
-        slots_.use(key, frame_ + 1);
-        slotContents_[*slot].drawn = frame_;
-        return mixedPlacement(key, {*slot, textureTransform(transform)});
+      const std::optional<Placement> own = placeAt(key, textureTransform(transform));
+      const std::optional<CompositeKey> other = pairedKey(key);
+      const std::optional<Placement> placement = own && other ? pairedPlacement(*other, *own) : own;
+      if (placement) {
+        return placement;
       }
+      alone = alone ? alone : own;
     }
     const std::optional<TileIndex> parent = tiling_->parent(at);
     if (!parent) {
-      return std::nullopt;
+      return alone;
     }
     transform = transform.then(tiling_->inParent(at));
     at = *parent;
   }
+}
+
+std::optional<CompositeStore::Placement> CompositeStore::placeAt(const CompositeKey& key, const glm::vec4& transform) {
+  const std::optional<std::uint32_t> slot = slots_.peek(key);
+  if (!slot || slotContents_[*slot].stamp < generationOf(key).since) {
+    return std::nullopt;
+  }
+  // What this frame draws must still be there when the next composes, or chunks without a composite would flicker.
+  slots_.use(key, frame_ + 1);
+  slotContents_[*slot].drawn = frame_;
+  return mixedPlacement(key, {*slot, transform});
 }
 
 std::string CompositeStore::waitingFor() const {
@@ -442,9 +477,13 @@ std::string CompositeStore::waitingFor() const {
       if (enabled[i]->awaitsData()) {
         return fmt::format("{} is being opened", enabled[i]->uri());
       }
-      if (state.wasDrawn && i < state.shown.steps.size() && enabled[i]->step() != state.shown.steps[i]) {
+      if (state.wasDrawn && !state.pair.isHeld && i < state.shown.steps.size() &&
+          enabled[i]->step() != state.shown.steps[i]) {
         return fmt::format("{} shows another time", enabled[i]->uri());
       }
+    }
+    if (state.wasDrawn && state.interpolated && !state.pair.isMixed && kindBetweenSteps() == kind) {
+      return fmt::format("{} shows one of two times", enabled[*state.interpolated]->uri());
     }
     if (inUse(kind) && !composer_->ownProgramReady(kind) && !composer_->ownProgramFailed(kind)) {
       return "a composition program is being built";

@@ -48,12 +48,14 @@ namespace meridian::globebrowsing {
 ///
 /// When a layer moves on to another step in time, composites of the new step are made beside the old; as soon as they
 /// cover all that the last frame drew, they are exchanged at once. If the pool has no room for both, the new ones
-/// replace the old one by one.
+/// replace the old one by one. Between two steps of a layer that interpolates, both are there and what is drawn is a
+/// mixture, until time leaves them.
 ///
 /// While the opacity of one layer of one kind moves, a second composite lies beside each that is drawn, in which that
 /// layer has the opacity of the other end (as a rule 0 or 1): what is drawn is a mixture, and nothing is composed anew
 /// in each frame. When the opacity rests, the second takes the first one's place, or the first is composed anew. Where
-/// mixtures are not exact (mixesExactly), several layers fade, or the pool has no room, each change is composed.
+/// mixtures are not exact (mixesExactly), several layers fade, or the pool has no room, each change is composed. Only
+/// one thing is mixed on a globe, and what is being interpolated before what fades.
 /// Render thread only; a steady frame allocates nothing.
 class CompositeStore {
  public:
@@ -68,6 +70,11 @@ class CompositeStore {
   struct State {
     bool present = true;  ///< every kind in use has the tile's own composite, if only of an earlier setting
     bool current = true;  ///< and they are of the present structure and settings
+    State& operator&=(const State& other) {
+      present = present && other.present;
+      current = current && other.current;
+      return *this;
+    }
   };
   /// Asks for what the tile's colours lack; it draws composites of at most that level.
   State want(const TileIndex& index, int colourLevel, double priority);
@@ -111,6 +118,8 @@ class CompositeStore {
   }
 
  private:
+  /// Facts of tiles long gone are dropped when there are that many.
+  static constexpr std::size_t mostFacts = 1 << 15;
   /// What is known of a tile's colours as long as no layer changes.
   struct Facts {
     std::array<std::uint8_t, compositeKindCount> ownerLevel{};  ///< of the tile whose composite is drawn
@@ -139,18 +148,28 @@ class CompositeStore {
     TileIndex index;
     int colourLevel = 0;
   };
+  /// Of `next`, as long as it is mixed with what is shown, or is going to be.
+  struct Pair {
+    bool isPair = false;   ///< both are of the same tiles, those that either needs
+    bool isMixed = false;  ///< it covers the view: both are drawn
+    bool isHeld = false;   ///< time is between the two: they are not exchanged
+    double weight = 0.0;   ///< how much of `next` is seen, 0 to 1
+  };
   struct KindState {
     std::uint64_t version = 0;       ///< of the groups' settings
     std::vector<Layer*> layers;      ///< that are enabled
     StructureKey key;                ///< of these
-    std::uint32_t reliefStream = 0;  ///< that its composites were made from; 0: none of its layers colours heights
+    std::uint32_t reliefStream = 0;  ///< that its composites were last made from, if any of its layers colours heights
     OpeningWait opening;
     FadeWatch fade;
     bool noRoomToFade = false;  ///< the pool has none for second composites, as long as this fade goes on
     Generation shown;
     Generation next;
-    bool hasNext = false;  ///< `next` is being composed
-    bool crowded = false;  ///< the pool has no room for it
+    bool hasNext = false;  ///< `next` is being composed, or mixed with what is shown
+    Pair pair;
+    std::optional<std::size_t> interpolated;   ///< the topmost layer that is between two steps
+    std::optional<std::uint64_t> crowdedStep;  ///< of such a layer, for whose other step the pool has no room
+    bool crowded = false;                      ///< the pool has no room for it
     bool hasSteps = false;
     std::uint64_t lastStamp = 0;
     std::unordered_map<TileIndex, std::uint8_t> nextOwnerLevels;
@@ -173,9 +192,27 @@ class CompositeStore {
   bool updateKind(CompositeKind kind);
   void takeLayers(CompositeKind kind);
   void takeSteps(KindState& state);
-  void beginNext(KindState& state);
+  /// The same of one generation.
+  void takeSteps(KindState& state, Generation& generation);
+  void beginNext(CompositeKind kind);
+  void dropNext(KindState& state);
+  void updateInterpolation(KindState& state) const;
+  /// The kind that is to be mixed because it is between two steps.
+  [[nodiscard]] std::optional<CompositeKind> kindBetweenSteps() const;
+  /// Whether that is so of this one, and no fade is still to end first.
+  [[nodiscard]] bool isInterpolated(CompositeKind kind) const;
+  /// The step of that layer that is to be shown; `other`: where it is interpolated, the one to mix with that.
+  [[nodiscard]] const LayerStepPointer& stepOf(const KindState& state, std::size_t layer, bool other) const;
+  /// Whether a generation is of these steps.
+  [[nodiscard]] bool isOf(const KindState& state, const Generation& generation, bool other) const;
+  void keepPair(CompositeKind kind);
+  void weighPair(CompositeKind kind);
+  /// The composite that the shown one of that key is drawn mixed with, while two steps are.
+  [[nodiscard]] std::optional<CompositeKey> pairedKey(const CompositeKey& key) const;
   void updateFading();
   [[nodiscard]] std::uint64_t settingsVersion(CompositeKind kind) const;
+  /// The next generation covers what is drawn, or has no room.
+  void endNext(KindState& state);
   void exchange(KindState& state);
   [[nodiscard]] bool nextCovers(CompositeKind kind) const;
   void wantNext(CompositeKind kind);
@@ -184,6 +221,8 @@ class CompositeStore {
   [[nodiscard]] TileIndex ancestor(TileIndex index, int level) const;
   [[nodiscard]] const Facts& facts(const TileIndex& index) const;
   [[nodiscard]] bool anyFiner(CompositeKind kind, const Generation& generation, const TileIndex& index) const;
+  /// The same of what is drawn.
+  [[nodiscard]] bool anyFiner(CompositeKind kind, const TileIndex& index) const;
   /// Whether that layer shows more in composites that are finer than the tile's.
   [[nodiscard]] bool isFiner(const Layer& layer, const LayerStepPointer& step, const TileIndex& index) const;
   [[nodiscard]] CompositeKey shownKey(CompositeKind kind, const TileIndex& index, int colourLevel) const;
@@ -207,6 +246,9 @@ class CompositeStore {
   Composed composeOne(const Request& request);
   void noteFull(const Request& request);
   void useOther(const CompositeKey& key, std::uint64_t frame);
+  /// Where that tile's composite is drawn; nothing where there is none.
+  [[nodiscard]] std::optional<Placement> placeAt(const CompositeKey& key, const glm::vec4& transform);
+  [[nodiscard]] std::optional<Placement> pairedPlacement(const CompositeKey& other, Placement placement);
   /// Adds what the composite is mixed with.
   [[nodiscard]] Placement mixedPlacement(const CompositeKey& key, Placement placement);
 
@@ -224,6 +266,7 @@ class CompositeStore {
   std::vector<TileDataPointer> held_;  ///< the raw tiles of parts_
   std::uint64_t frame_ = 0;
   std::optional<CompositeKind> fading_;
+  bool interpolates_ = false;  ///< `fading_` is mixed because it is between two steps in time
   std::optional<CompositeKind> mixing_;
   bool drewMixed_ = false;  ///< since the last beginFrame()
   bool mixedLast_ = false;  ///< in the last frame

@@ -1,7 +1,9 @@
 #include "globebrowsing/layers/layer.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "globebrowsing/providers/default_tile_provider.h"
 #include "globebrowsing/streaming/tile_streamer.h"
 #include "host/api/log.h"
 
@@ -60,6 +62,8 @@ Layer::Layer(LayerDescription description, LayerGroupId group, const LayerServic
       blendMode({"BlendMode", "Blend mode", "How the layer is put onto those below"}, blendModeNames(),
                 static_cast<int>(description.blendMode)),
       guiDescription({"GuiDescription", "Description", "What the layer shows", true}, description.description),
+      attribution({"Attribution", "Attribution", "Whom the layer's data are to be credited to", true},
+                  description.attribution),
       colour({"Color", "Color", "Of a SolidColor layer"}, description.colour, {0.0, 1.0}),
       gamma({"Gamma", "Gamma", "Exponent of a value's magnitude"}, description.settings.gamma, gammaRange),
       multiplier({"Multiplier", "Multiplier", "Factor, after the exponent"}, description.settings.multiplier,
@@ -75,10 +79,12 @@ Layer::Layer(LayerDescription description, LayerGroupId group, const LayerServic
       hadZIndex_(description.zIndex.has_value()),
       sampling_(samplingOf(*description.provider)),
       request_(std::move(description.request)),
+      data_(request_, description.type, [this] { wantsRestart_ = true; }),
       provider_(std::move(description.provider)),
       services_(services),
       player_(services.workers, services.streamer),
-      changed_(std::move(changed)) {
+      changed_(std::move(changed)),
+      hasOwnAttribution_(!attribution.get().empty()) {
   addProperties();
   connectProperties();
   attachProvider();
@@ -86,7 +92,13 @@ Layer::Layer(LayerDescription description, LayerGroupId group, const LayerServic
 
 Layer::~Layer() {
   // A worker that still opens the provider may be the last to hold it.
-  if (PropertyOwner* owner = provider_->properties()) {
+  detachProvider();
+}
+
+void Layer::detachProvider() {
+  PropertyOwner* owner = provider_->properties();
+  data_.detach(*this, owner);
+  if (owner != nullptr) {
     removeChild(*owner);
   }
 }
@@ -100,14 +112,16 @@ void Layer::attachProvider() {
       }
     }
   }
+  data_.attach(*this, provider_->properties());
   step_ = provider_->steps() != nullptr
               ? nullptr
               : std::make_shared<const LayerStep>(provider_, services_.streamer, provider_.get());
 }
 
 void Layer::addProperties() {
-  for (Property* property : std::initializer_list<Property*>{&type, &enabled, &opacity, &fade, &blendMode, &reset,
-                                                             &remove, &guiDescription, &status, &lastError}) {
+  for (Property* property :
+       std::initializer_list<Property*>{&type, &enabled, &opacity, &fade, &blendMode, &reset, &remove, &guiDescription,
+                                        &attribution, &status, &lastError}) {
     addProperty(*property);
   }
   if (sampling_ == Sampling::SolidColor) {
@@ -152,8 +166,42 @@ void Layer::connectProperties() {
       changed_(*this, Change::Settings);
     }
   });
-  reset.onChange([this] { restart(); });
+  reset.onChange([this] { restart(request_); });
   remove.onChange([this] { wantsRemoval_ = true; });
+}
+
+Value Layer::table() const {
+  Table table = *data_.applied(request_.table).table();
+  const auto keep = [&table](const Property& property) { table.fields[property.identifier()] = property.value(); };
+  keep(enabled);
+  keep(opacity);
+  table.fields["BlendMode"] = blendMode.word();
+  table.fields["Settings"] =
+      Table{{}, {{"Gamma", gamma.get()}, {"Multiplier", multiplier.get()}, {"Offset", offset.get()}}};
+  table.fields["Adjustment"] = Table{{},
+                                     {{"Type", adjustmentType.word()},
+                                      {"ChromaKeyColor", Value(chromaKeyColour.get())},
+                                      {"ChromaKeyTolerance", chromaKeyTolerance.get()}}};
+  if (sampling_ == Sampling::SolidColor) {
+    keep(colour);
+  }
+  if (PropertyOwner* owner = provider_->properties()) {
+    const auto& keys = providerSchema(static_cast<LayerType>(type.get())).fields();
+    for (const Property* property : owner->properties()) {
+      const bool isKey = std::any_of(keys.begin(), keys.end(),
+                                     [&](const Schema::Field& field) { return field.key == property->identifier(); });
+      if (isKey && !property->isReadOnly()) {
+        keep(*property);
+      }
+    }
+  }
+  for (const std::string_view key : {"FilePath", "FolderPath"}) {
+    const auto found = table.fields.find(key);
+    if (found != table.fields.end() && found->second.string() != nullptr) {
+      found->second = dataPath(*found->second.string(), request_.folder).text;
+    }
+  }
+  return table;
 }
 
 bool Layer::isReady() const {
@@ -168,16 +216,16 @@ bool Layer::isOpening() const {
           (state == TileProvider::State::Ready && step_ == nullptr && player_.awaits()));
 }
 
-void Layer::restart() {
-  Result<std::shared_ptr<TileProvider>> provider = makeProvider(request_);
+void Layer::restart(ProviderRequest request) {
+  Result<std::shared_ptr<TileProvider>> provider = makeProvider(request);
   if (!provider) {
     lastError.put(provider.error().message());
     return;
   }
-  if (PropertyOwner* owner = provider_->properties()) {
-    removeChild(*owner);
-  }
+  detachProvider();
   player_.clear();
+  request_ = std::move(request);
+  type.put(static_cast<int>(*layerTypeOf(request_)));  // a path may name what follows time, or no longer
   provider_ = std::move(*provider);
   attachProvider();
   seenState_ = TileProvider::State::NotOpened;
@@ -189,6 +237,11 @@ void Layer::restart() {
 }
 
 void Layer::update(const Time& now) {
+  if (std::exchange(wantsRestart_, false)) {
+    ProviderRequest request = request_;
+    request.table = data_.applied(request_.table);
+    restart(std::move(request));
+  }
   if (isEnabled() && services_.workers != nullptr && provider_->state() == TileProvider::State::NotOpened) {
     TileProvider::openOn(*services_.workers, provider_);
   }
@@ -196,6 +249,15 @@ void Layer::update(const Time& now) {
   updateRelief();
   if (provider_->steps() != nullptr && provider_->state() == TileProvider::State::Ready) {
     play(now);
+  }
+  updateAttribution();
+}
+
+void Layer::updateAttribution() {
+  const std::string_view found =
+      hasOwnAttribution_ || step_ == nullptr ? attribution.get() : step_->tiles()->attribution();
+  if (found != attribution.get()) {
+    attribution.put(std::string(found));
   }
 }
 
@@ -249,13 +311,13 @@ void Layer::updateRelief() {
 }
 
 void Layer::noteWaiting() {
-  const std::optional<Error> failure = step_ != nullptr ? step_->tiles()->lastFailure() : std::nullopt;
+  const std::optional<Error> failure = (step_ != nullptr ? step_->tiles() : provider_)->lastFailure();
   std::string text = failure ? failure->message() : std::string();
   if (text == seenFailure_) {
     return;
   }
   if (seenFailure_.empty()) {
-    log::warning("{}: tiles wait: {}", uri(), text);
+    log::warning("{} waits: {}", uri(), text);
   }
   seenFailure_ = std::move(text);
   lastError.put(seenFailure_.empty() && seenError_ != nullptr ? seenError_->message() : seenFailure_);

@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "globebrowsing/layers/blend.h"
+#include "globebrowsing/layers/data_properties.h"
 #include "globebrowsing/layers/layer_description.h"
 #include "globebrowsing/layers/layer_group.h"
 #include "globebrowsing/layers/step_player.h"
@@ -40,6 +41,12 @@ class Layer final : public PropertyOwner {
   Layer(LayerDescription description, LayerGroupId group, const LayerServices& services,
         std::function<void(Layer&, Change)> changed);
   ~Layer() override;
+
+  /// The table that makes the layer as it is now: its own, with what was set since, and paths that hold anywhere.
+  [[nodiscard]] Value table() const;
+  /// Whether a user added it, rather than an asset.
+  [[nodiscard]] bool isUsers() const { return isUsers_; }
+  void setUsers() { isUsers_ = true; }
 
   /// What its provider is made from.
   [[nodiscard]] const ProviderRequest& request() const { return request_; }
@@ -75,6 +82,10 @@ class Layer final : public PropertyOwner {
   /// The tiles to show: those of the provider, or of its step at the time of the last update. Another after Reset and
   /// with each step; null while the first step is being opened.
   [[nodiscard]] const LayerStepPointer& step() const { return step_; }
+  /// Where steps are interpolated, what step() is mixed with now, and how much of that there is, 0 to 1. Null where the
+  /// picture is step()'s alone.
+  [[nodiscard]] const LayerStepPointer& otherStep() const { return player_.other(); }
+  [[nodiscard]] double otherWeight() const { return player_.otherWeight(); }
   /// Steps whose tiles are worth fetching although nobody sees them yet, nearest first.
   [[nodiscard]] const std::vector<LayerStepPointer>& ahead() const { return player_.ahead(); }
   /// Of step()'s tiles in the TileStreamer; 0 without a streamer or step.
@@ -83,7 +94,8 @@ class Layer final : public PropertyOwner {
   [[nodiscard]] bool isReady() const;
   /// Whether it has nothing to show yet because its data are being opened.
   [[nodiscard]] bool isOpening() const;
-  /// The same, or it shows an earlier step because the present one is being opened.
+  /// The same, or it shows an earlier step because the present one is being opened, or one alone because the one to mix
+  /// it with is.
   [[nodiscard]] bool awaitsData() const { return isOpening() || player_.awaits(); }
 
   /// Opens the provider when the layer has been enabled, goes to the step of that time, and brings Status and LastError
@@ -100,6 +112,7 @@ class Layer final : public PropertyOwner {
   TriggerProperty reset{{"Reset", "Reset", "Opens the data anew and drops the layer's tiles"}};
   TriggerProperty remove{{"Remove", "Remove", "Deletes the layer from its group"}};
   StringProperty guiDescription;
+  StringProperty attribution;
   StringProperty status{{"Status", "Status", "not opened, opening, ready or failed", true}, "not opened"};
   StringProperty lastError{{"LastError", "Last error", "What went wrong last with this layer's data", true}};
   Vec3Property colour;
@@ -119,10 +132,13 @@ class Layer final : public PropertyOwner {
   void addProperties();
   void connectProperties();
   void attachProvider();
-  void restart();
+  void detachProvider();
+  /// Makes the provider anew from such a request, which becomes the layer's; on an error it keeps what it has.
+  void restart(ProviderRequest request);
   void play(const Time& now);
   void updateStatus();
   void updateRelief();
+  void updateAttribution();
   void noteWaiting();
 
   LayerGroupId group_;
@@ -131,6 +147,8 @@ class Layer final : public PropertyOwner {
   bool hadZIndex_;
   Sampling sampling_;
   ProviderRequest request_;
+  bool wantsRestart_ = false;  ///< not at once: whoever sets many properties holds those of the provider
+  DataProperties data_;
   std::shared_ptr<TileProvider> provider_;
   LayerServices services_;
   StepPlayer player_;
@@ -138,10 +156,12 @@ class Layer final : public PropertyOwner {
   std::function<void(Layer&, Change)> changed_;
   TileProvider::State seenState_ = TileProvider::State::NotOpened;
   const Error* seenError_ = nullptr;
+  const bool hasOwnAttribution_;
   std::string seenFailure_;  ///< of tiles that wait
   std::string seenProblem_;  ///< of its ReliefStyle
   int framesUntilLook_ = 0;
   bool wantsRemoval_ = false;
+  bool isUsers_ = false;
   bool quiet_ = false;  ///< SetDefault tells once, not three times
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "globebrowsing/source/service_text.h"
+
 namespace meridian::globebrowsing {
 
 namespace {
@@ -62,6 +64,7 @@ void readCommon(const Value& table, BlendMode mode, LayerDescription& layer) {
   layer.identifier = stringAt(table, "Identifier");
   layer.name = stringAt(table, "Name");
   layer.description = stringAt(table, "Description");
+  layer.attribution = creditText(stringAt(table, "Attribution"));
   if (const Value* enabled = table.find("Enabled")) {
     layer.enabled = enabled->boolean().value_or(false);
   }
@@ -80,6 +83,7 @@ const Schema& layerSchema() {
       {"Identifier", Type::Identifier, "the layer's name in scripts, unique in its group", true},
       {"Name", Type::String, "the layer's name for people"},
       {"Description", Type::String, "what the layer shows, for people"},
+      {"Attribution", Type::String, "whom its data are to be credited to, in place of what they say themselves"},
       {"Type", Type::String, "where the layer's data come from; DefaultTileProvider when absent"},
       {"Enabled", Type::Boolean, "whether the layer is shown from the start"},
       {"ZIndex", Type::Integer, "the drawing order: higher is later, on top", false, 1.0, 2147483647.0},

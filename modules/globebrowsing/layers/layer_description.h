@@ -28,6 +28,7 @@ struct LayerDescription {
   std::string identifier;
   std::string name;
   std::string description;
+  std::string attribution;  ///< on one line; empty: what the data say themselves
   LayerType type = LayerType::DefaultTileProvider;
   bool enabled = false;
   std::optional<int> zIndex;

@@ -12,6 +12,9 @@ namespace {
 
 using State = TileProvider::State;
 
+/// Seconds by which a time is surely in the step before.
+constexpr double before = 1e-3;
+
 /// Open, or never going to be.
 bool isDone(const LayerStep& step) {
   const State state = step.tiles()->state();
@@ -25,8 +28,12 @@ void StepPlayer::update(const TileProvider& source, const Time& now) {
   noteMotion(now);
   const LayerStepPointer wanted = stepAt(source, now);
   awaits_ = wanted != nullptr && !isDone(*wanted);
+  other_.reset();
   if (wanted != nullptr) {
     show(wanted);
+    if (source.steps()->interpolates() && current_ == wanted) {
+      mix(source, now);
+    }
     lookAhead(source, now, wanted->when());
   }
   dropUnused();
@@ -97,6 +104,27 @@ void StepPlayer::show(const LayerStepPointer& wanted) {
   }
 }
 
+void StepPlayer::mix(const TileProvider& source, const Time& now) {
+  const TileStep& shown = current_->when();
+  const Time beyond = now < shown.instant ? shown.begin + -before : shown.end;
+  if (current_->tiles()->state() != State::Ready || !std::isfinite(beyond.tdbSeconds())) {
+    return;
+  }
+  const LayerStepPointer other = stepAt(source, beyond);
+  if (other == nullptr || other == current_) {
+    return;
+  }
+  const double weight = (now - shown.instant) / (other->when().instant - shown.instant);
+  if (!(weight >= 0.0 && weight <= 1.0)) {
+    return;  // not between them: a service's default, or a file that shows for longer than it should
+  }
+  awaits_ = awaits_ || !isDone(*other);
+  if (other->tiles()->state() == State::Ready) {
+    other_ = other;
+    otherWeight_ = weight;
+  }
+}
+
 void StepPlayer::lookAhead(const TileProvider& source, const Time& now, const TileStep& shown) {
   if (!plays_) {
     ahead_.clear();
@@ -107,7 +135,6 @@ void StepPlayer::lookAhead(const TileProvider& source, const Time& now, const Ti
   Time time = now;
   for (int i = 0; i < stepsAhead; ++i) {
     // The next step, or where time will be in the next frame if that is further.
-    constexpr double before = 1e-3;
     time = moved_ > 0.0 ? std::max(last.end, time + moved_) : std::min(last.begin + -before, time + moved_);
     if (!std::isfinite(time.tdbSeconds())) {
       return;
@@ -145,6 +172,7 @@ void StepPlayer::rest() {
     return kept.step != current_ && kept.step->tiles()->state() != State::Opening;
   });
   ahead_.clear();
+  other_.reset();
   last_.reset();
   plays_ = false;
   awaits_ = false;

@@ -14,7 +14,8 @@ namespace meridian::globebrowsing {
 /// and while time plays the next ones in the direction of play. Keeps a few steps, however long it plays.
 ///
 /// A step is shown once it is open (or has failed: then the layer has nothing to show); until then the one before
-/// stays. Where time plays faster than steps open, the nearest that is open is shown. Render thread only.
+/// stays. Where time plays faster than steps open, the nearest that is open is shown. Where steps are interpolated, the
+/// one on the other side of the moment is opened too. Render thread only.
 class StepPlayer {
  public:
   /// Steps that are kept, beside those that somebody else holds.
@@ -36,7 +37,11 @@ class StepPlayer {
 
   /// The step to show; null before the first is open.
   [[nodiscard]] const LayerStepPointer& current() const { return current_; }
-  /// Whether the step of the moment is still being opened.
+  /// What current() is mixed with, and how much of that there is, 0 to 1; null where there is nothing to mix, or not
+  /// yet.
+  [[nodiscard]] const LayerStepPointer& other() const { return other_; }
+  [[nodiscard]] double otherWeight() const { return otherWeight_; }
+  /// Whether the step of the moment, or the one to mix it with, is still being opened.
   [[nodiscard]] bool awaits() const { return awaits_; }
   /// Open steps that come next, nearest first.
   [[nodiscard]] const std::vector<LayerStepPointer>& ahead() const { return ahead_; }
@@ -52,6 +57,7 @@ class StepPlayer {
   /// The step of that time, found or made, and being opened if there is room for that.
   LayerStepPointer stepAt(const TileProvider& source, const Time& time);
   void show(const LayerStepPointer& wanted);
+  void mix(const TileProvider& source, const Time& now);
   void lookAhead(const TileProvider& source, const Time& now, const TileStep& shown);
   void noteMotion(const Time& now);
   void dropUnused();
@@ -60,6 +66,8 @@ class StepPlayer {
   TileStreamer* streamer_;
   std::vector<Kept> kept_;
   LayerStepPointer current_;
+  LayerStepPointer other_;
+  double otherWeight_ = 0.0;
   std::vector<LayerStepPointer> ahead_;
   std::string error_;
   std::optional<Time> last_;

@@ -48,7 +48,6 @@ CapabilitiesDocument::CapabilitiesDocument(std::string url, std::shared_ptr<Fetc
   request_.priority = documentPriority;
   request_.maximumBytes = largestDocument;
   request_.emptyStatuses = {};
-  request_.isPatient = false;
 }
 
 CapabilitiesDocument::~CapabilitiesDocument() = default;
@@ -80,6 +79,11 @@ Result<std::shared_ptr<const Capabilities>> CapabilitiesDocument::capabilities()
   }
   capabilities_ = std::make_shared<const Capabilities>(std::move(*found));
   return capabilities_;
+}
+
+std::optional<Error> CapabilitiesDocument::lastFailure() const {
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  return lock && fetch_ != nullptr ? fetch_->lastFailure() : std::nullopt;
 }
 
 Result<Capabilities> CapabilitiesDocument::read() {

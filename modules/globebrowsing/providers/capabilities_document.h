@@ -23,11 +23,14 @@ class CapabilitiesDocument {
 
   [[nodiscard]] const std::string& url() const { return url_; }
   /// Begins the fetch. Returns whether nothing is missing: then capabilities() can be called. If not, `wake` is called
-  /// once, from any thread, perhaps before this returns; then prepare again. Blocks for no server.
+  /// once, from any thread, perhaps before this returns; then prepare again. Blocks for no server; while that is down,
+  /// waits until it is back.
   [[nodiscard]] bool prepare(const std::function<void()>& wake);
-  /// Reads what was fetched, or the file; another's reading is waited for. Errors: it could not be had (at once where
-  /// its server is down), or is of no use.
+  /// Reads what was fetched, or the file; another's reading is waited for. Errors: it could not be had, or is of no
+  /// use.
   [[nodiscard]] Result<std::shared_ptr<const Capabilities>> capabilities();
+  /// Why it is not there yet, if the fetch has failed before and waits to be tried again. Waits for nobody.
+  [[nodiscard]] std::optional<Error> lastFailure() const;
 
  private:
   struct Arrival;
@@ -37,7 +40,7 @@ class CapabilitiesDocument {
   const std::string url_;
   const std::shared_ptr<Fetcher> fetcher_;
   FetchRequest request_;
-  std::mutex mutex_;  ///< of all that follows; held while reading
+  mutable std::mutex mutex_;  ///< of all that follows; held while reading
   std::shared_ptr<const Capabilities> capabilities_;
   std::shared_ptr<Arrival> arrival_;  ///< null: not fetched
   std::unique_ptr<PendingFetch> fetch_;

@@ -83,7 +83,7 @@ Result<void> checkData(const DataPath& path, const std::string& where) {
   const std::filesystem::file_status status = std::filesystem::status(path.text, code);
   if (!std::filesystem::exists(status)) {
     return failure("the data file " + path.text + " does not exist", where,
-                   "check FilePath; a relative path starts at the asset's folder");
+                   "check the path; a relative one starts at the asset's folder");
   }
   if (std::filesystem::is_directory(status)) {
     return failure("the data file " + path.text + " is a directory", where, "name a file in it");
@@ -165,8 +165,23 @@ Result<void> DefaultTileProvider::openData() {
       check().and_then([this] { return openSource(); }).map([this](std::shared_ptr<PixelSource> source) {
         source_ = std::move(source);
       });
-  opening_.reset();
+  if (opening_ != nullptr) {
+    opening_->end();
+  }
   return opened;
+}
+
+std::optional<Error> DefaultTileProvider::lastFailure() const {
+  switch (state()) {
+    case State::Opening:
+      return opening_ != nullptr ? opening_->lastFailure() : std::nullopt;
+    case State::Ready:
+      return source_->lastFailure();
+    case State::NotOpened:
+    case State::Failed:
+      break;
+  }
+  return std::nullopt;
 }
 
 Result<std::shared_ptr<PixelSource>> DefaultTileProvider::openSource() {

@@ -38,8 +38,9 @@ class DefaultTileProvider final : public TileProvider {
   DefaultTileProvider(DataPath path, RasterDescription description, const ProviderRequest& request);
 
   [[nodiscard]] Result<void> check() const override;
-  [[nodiscard]] std::optional<Error> lastFailure() const override {
-    return state() == State::Ready ? source_->lastFailure() : std::nullopt;
+  [[nodiscard]] std::optional<Error> lastFailure() const override;
+  [[nodiscard]] std::string_view attribution() const override {
+    return state() == State::Ready ? source_->attribution() : std::string_view();
   }
   [[nodiscard]] const RasterDescription& description() const { return description_; }
 
@@ -64,7 +65,7 @@ class DefaultTileProvider final : public TileProvider {
   RasterDescription description_;
   std::shared_ptr<SourceTileStore> sourceTiles_;
   std::shared_ptr<SeriesShare> share_;
-  std::unique_ptr<ServiceOpening> opening_;  ///< until it is open; null where the data are no map service's
+  std::unique_ptr<ServiceOpening> opening_;  ///< null where the data are no map service's
   std::shared_ptr<PixelSource> source_;
 };
 

@@ -59,6 +59,15 @@ std::optional<Error> lastFailureOf(std::span<const ProviderPointer> providers) {
   return std::nullopt;
 }
 
+std::string_view attributionOf(std::span<const ProviderPointer> providers) {
+  for (const ProviderPointer& provider : providers) {
+    if (const std::string_view attribution = provider->attribution(); !attribution.empty()) {
+      return attribution;
+    }
+  }
+  return {};
+}
+
 bool prepareAll(std::span<const ProviderPointer> providers, bool onlySteps, const std::function<void()>& wake) {
   return std::all_of(providers.begin(), providers.end(), [&](const ProviderPointer& provider) {
     return (onlySteps && provider->steps() == nullptr) || provider->prepare(wake);

@@ -64,6 +64,10 @@ std::span<const ProviderType> providerTypes() {
   return types;
 }
 
+const Schema& providerSchema(LayerType type) {
+  return *find(type)->schema;
+}
+
 std::string placeOf(const ProviderRequest& request, std::string_view key) {
   std::string place = request.where;
   place.append(place.empty() || request.path.empty() ? "" : ": ").append(request.path);

@@ -41,6 +41,9 @@ struct ProviderType {
 
 [[nodiscard]] std::span<const ProviderType> providerTypes();
 
+/// Of that type's own keys; it has a provider.
+[[nodiscard]] const Schema& providerSchema(LayerType type);
+
 /// The type that the table's `Type` names; DefaultTileProvider without one. Errors: an unknown type, or one that has no
 /// provider here; the remedy lists those that have.
 [[nodiscard]] Result<LayerType> layerTypeOf(const ProviderRequest& request);

@@ -1,13 +1,12 @@
 #include "globebrowsing/providers/relief_provider.h"
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <numbers>
 #include <utility>
 
 #include "globebrowsing/providers/default_tile_provider.h"
 #include "globebrowsing/providers/inner_providers.h"
+#include "globebrowsing/source/document_file.h"
 #include "host/api/log.h"
 
 namespace meridian::globebrowsing {
@@ -34,21 +33,6 @@ void take(const Value& table, std::string_view key, FloatProperty& into) {
   into.put(valueAt(table, key).number().value_or(into.get()));
 }
 
-Result<std::string> readText(const std::string& path, const std::string& where) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text;
-  text.resize(longestRampFile + 1);
-  if (!file || file.read(text.data(), static_cast<std::streamsize>(text.size())).bad()) {
-    return failure("the colour ramp " + path + " cannot be read", where, "check the path and the permissions");
-  }
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > longestRampFile) {
-    return failure("the file " + path + " is too long for a colour ramp", where,
-                   "name a text file as gdaldem color-relief takes it");
-  }
-  return text;
-}
-
 /// Whether it is a ramp at all, whatever its percentages mean.
 Result<void> checkRamp(const std::string& text, const std::string& where) {
   const Result<ColourRamp> ramp = readColourRamp(text, {0.0, 1.0});
@@ -61,6 +45,7 @@ const ReliefStyle* ReliefProvider::relief() {
   if (!hasTaken_ && state() == State::Ready) {
     hasTaken_ = true;
     takeOpened();
+    isStyled_ = false;
   }
   if (!isStyled_) {
     isStyled_ = true;
@@ -117,6 +102,7 @@ RampProvider::RampProvider(ReliefKind kind, std::string ramp, const glm::dvec2& 
       colourRamp({"ColorRamp", "Color ramp", "Values and their colours, as gdaldem color-relief takes them"},
                  std::move(ramp)),
       range({"Range", "Range", "What 0% and 100% mean in the ramp: metres, or degrees of slope"}, values) {
+  colourRamp.onChange([this] { isRampSet_ = true; });
   add(colourRamp);
   add(range);
 }
@@ -129,10 +115,14 @@ Result<void> RampProvider::openData() {
   if (!file_) {
     return {};
   }
-  return check().and_then([this] { return readText(*file_, where_); }).and_then([this](std::string text) {
-    fileText_ = std::move(text);
-    return checkRamp(fileText_, where_ + ": " + *file_);
-  });
+  return check()
+      .and_then([this] {
+        return readTextFile(*file_, longestRampFile, where_, "name a text file as gdaldem color-relief takes it");
+      })
+      .and_then([this](std::string text) {
+        fileText_ = std::move(text);
+        return checkRamp(fileText_, where_ + ": " + *file_);
+      });
 }
 
 void RampProvider::takeOpened() {
@@ -143,7 +133,7 @@ void RampProvider::takeOpened() {
 
 void RampProvider::restyle() {
   style().problem.clear();
-  if (file_ && state() != State::Ready) {
+  if (file_ && state() != State::Ready && !isRampSet_) {
     return;
   }
   Result<ColourRamp> ramp = readColourRamp(colourRamp.get(), range.get());

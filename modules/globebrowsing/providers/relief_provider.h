@@ -57,8 +57,9 @@ class RampProvider final : public ReliefProvider {
   void takeOpened() override;
 
   std::optional<std::string> file_;
-  std::string where_;     ///< of the file, for errors
-  std::string fileText_;  ///< written once, before the provider is Ready
+  bool isRampSet_ = false;  ///< while it runs
+  std::string where_;       ///< of the file, for errors
+  std::string fileText_;    ///< written once, before the provider is Ready
 };
 
 class HillshadeProvider final : public ReliefProvider {

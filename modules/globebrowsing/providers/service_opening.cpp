@@ -27,6 +27,7 @@ const Result<ServiceDescription>& ServiceOpening::describe() {
     description_ = describeService(filePath_, where_);
     if (*description_ && (*description_)->reference) {
       const std::string& url = (*description_)->reference->url;
+      const std::lock_guard lock(mutex_);
       document_ = share_ ? share_->documentOf(url, fetcher_) : std::make_shared<CapabilitiesDocument>(url, fetcher_);
     }
   }
@@ -55,6 +56,17 @@ Result<std::optional<TileService>> ServiceOpening::service() {
 
 Result<std::optional<CapabilitiesReference>> ServiceOpening::reference() {
   return describe().map([](const ServiceDescription& description) { return description.reference; });
+}
+
+std::optional<Error> ServiceOpening::lastFailure() const {
+  const std::lock_guard lock(mutex_);
+  return document_ != nullptr ? document_->lastFailure() : std::nullopt;
+}
+
+void ServiceOpening::end() {
+  description_.reset();
+  const std::lock_guard lock(mutex_);
+  document_.reset();
 }
 
 std::vector<std::string> ServiceOpening::notes() const {

@@ -30,7 +30,7 @@ class SeriesShare {
 };
 
 /// Finds out whether the data of a layer are the tiles of a map service, and if so of which: reads the description and
-/// has the capabilities fetched that it refers to. One thread at a time, a worker's.
+/// has the capabilities fetched that it refers to. One thread at a time, a worker's, but for lastFailure().
 class ServiceOpening {
  public:
   /// `filePath` and `where` as describeService takes them; `share` of a series.
@@ -48,12 +48,16 @@ class ServiceOpening {
   [[nodiscard]] bool prepare(const std::function<void()>& wake);
 
   /// The service; nothing: the data are GDAL's business. Errors: in the description; capabilities that could not be had
-  /// (at once where their server is down) or are of no use.
+  /// or are of no use.
   [[nodiscard]] Result<std::optional<TileService>> service();
   /// The layer of capabilities that the data are; nothing where they are something else. Errors: in the description.
   [[nodiscard]] Result<std::optional<CapabilitiesReference>> reference();
   /// Of a reference: what it refers to.
   [[nodiscard]] const std::shared_ptr<CapabilitiesDocument>& document() const { return document_; }
+  /// Why capabilities are waited for, if they are. From any thread.
+  [[nodiscard]] std::optional<Error> lastFailure() const;
+  /// Gives up what it has read, once the service is known.
+  void end();
   /// What the description says and is not heeded, for the log.
   [[nodiscard]] std::vector<std::string> notes() const;
 
@@ -65,6 +69,7 @@ class ServiceOpening {
   std::shared_ptr<Fetcher> fetcher_;
   std::shared_ptr<SeriesShare> share_;
   std::optional<Result<ServiceDescription>> description_;
+  mutable std::mutex mutex_;  ///< of document_'s changes, and of reading it elsewhere
   std::shared_ptr<CapabilitiesDocument> document_;
 };
 

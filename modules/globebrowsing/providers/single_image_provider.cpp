@@ -36,6 +36,11 @@ class ImageTiling final : public Tiling {
   [[nodiscard]] bool isSeparable() const override { return true; }
 };
 
+const ImageTiling& imageTiling() {
+  static const ImageTiling tiling(*Ellipsoid::fromRadii(glm::dvec3(1.0)));
+  return tiling;
+}
+
 }  // namespace
 
 const Schema& SingleImageProvider::schema() {
@@ -61,22 +66,12 @@ Result<void> SingleImageProvider::openData() {
   description.path = path_.text;
   description.where = where_;
   description.extentDegrees = imageDegrees;
-  const Result<std::shared_ptr<RasterSource>> source = RasterSource::open(description);
-  if (!source) {
-    return tl::make_unexpected(source.error());
-  }
-  const Result<Ellipsoid> sphere = Ellipsoid::fromRadii(glm::dvec3(1.0));
-  const ImageTiling tiling(*sphere);
-  return resampleColours(**source, tiling, TileIndex{}, colourLayout, {})
-      .and_then([&](ColourPixels colours) {
-        colours_ = std::move(colours);
-        return resampleHeights(**source, tiling, TileIndex{}, heightLayout, {});
+  return RasterSource::open(description)
+      .and_then([this](std::shared_ptr<RasterSource> source) {
+        source_ = std::move(source);
+        return resampleColours(*source_, imageTiling(), TileIndex{}, colourLayout, {});
       })
-      .and_then([&](HeightPixels heights) {
-        heights_ = std::move(heights);
-        return resampleHeights(**source, tiling, TileIndex{}, reliefLayout, {});
-      })
-      .map([this](HeightPixels relief) { relief_ = std::move(relief); });
+      .map([this](ColourPixels colours) { colours_ = std::move(colours); });
 }
 
 Result<ColourPixels> SingleImageProvider::makeColours(const Tiling& /*tiling*/, const TileIndex& /*index*/,
@@ -85,8 +80,8 @@ Result<ColourPixels> SingleImageProvider::makeColours(const Tiling& /*tiling*/, 
 }
 
 Result<HeightPixels> SingleImageProvider::makeHeights(const Tiling& /*tiling*/, const TileIndex& /*index*/,
-                                                      const TileLayout& layout, std::stop_token /*stop*/) const {
-  return layout == heightLayout ? heights_ : relief_;
+                                                      const TileLayout& layout, std::stop_token stop) const {
+  return resampleHeights(*source_, imageTiling(), TileIndex{}, layout, std::move(stop));
 }
 
 bool SingleImageProvider::dataOverlap(const Tiling& /*tiling*/, const TileIndex& /*index*/) const {

@@ -17,7 +17,7 @@ class SingleImageProvider final : public TileProvider {
   [[nodiscard]] Result<void> check() const override;
 
  private:
-  /// Reads the image onto one tile's samples in each layout, once.
+  /// Reads the colours of the one tile that all are, once; heights, which few want, when they are wanted.
   [[nodiscard]] Result<void> openData() override;
   [[nodiscard]] Result<ColourPixels> makeColours(const Tiling& tiling, const TileIndex& index,
                                                  std::stop_token stop) const override;
@@ -28,9 +28,8 @@ class SingleImageProvider final : public TileProvider {
 
   DataPath path_;
   std::string where_;
+  std::shared_ptr<RasterSource> source_;
   ColourPixels colours_;
-  HeightPixels heights_;  ///< in heightLayout
-  HeightPixels relief_;   ///< in reliefLayout
 };
 
 }  // namespace meridian::globebrowsing

@@ -1,14 +1,16 @@
 #include "globebrowsing/providers/temporal_tile_provider.h"
 
 #include <filesystem>
-#include <fstream>
+#include <system_error>
 #include <utility>
 
+#include "globebrowsing/providers/colormapped_tile_provider.h"
 #include "globebrowsing/providers/date_text.h"
 #include "globebrowsing/providers/default_tile_provider.h"
 #include "globebrowsing/providers/inner_providers.h"
 #include "globebrowsing/providers/service_series.h"
 #include "globebrowsing/providers/temporal_document.h"
+#include "globebrowsing/source/document_file.h"
 #include "globebrowsing/source/source_tile_store.h"
 #include "host/api/log.h"
 
@@ -18,21 +20,6 @@ namespace {
 
 /// Of an XML file; there is no longer one.
 constexpr std::size_t mostDocumentBytes = std::size_t{1} << 20;
-
-Result<std::string> readDocument(const std::string& path, const std::string& where) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text(mostDocumentBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (file.bad() || (text.empty() && !file.eof())) {
-    return failure("the file " + path + " cannot be read", where, "check its permissions");
-  }
-  if (text.size() > mostDocumentBytes) {
-    return failure("the file " + path + " is no description of a series: it is larger than 1 MiB", where,
-                   "name an <OpenSpaceTemporalGDALDataset>, or use Mode, Prototyped and Folder");
-  }
-  return text;
-}
 
 Result<std::unique_ptr<TimeSeries>> seriesOf(std::string_view document, const ProviderRequest& request) {
   return readTemporalDocument(document, placeOf(request, "FilePath"))
@@ -80,8 +67,9 @@ const Schema& TemporalTileProvider::schema() {
         "<OpenSpaceTemporalGDALDataset>, or a file that holds one"},
        {"UseFixedTime", Type::Boolean, "whether FixedTime is shown whatever the time"},
        {"FixedTime", Type::String, "the date to show then"},
-       {"Interpolation", Type::Boolean, "whether steps are blended into each other; without effect here"},
-       {"Colormap", Type::String, "an image whose first row colours blended steps; without effect here"}});
+       {"Interpolation", Type::Boolean, "whether the picture between two steps is a mixture of both, by the time"},
+       {"Colormap", Type::String,
+        "an image whose first row says the colours of the first band, from its least value to its greatest"}});
   return fields;
 }
 
@@ -99,6 +87,7 @@ Result<std::shared_ptr<TileProvider>> TemporalTileProvider::make(const ProviderR
     provider->fixedTime.put(*text);
   }
   provider->useFixedTime.put(valueAt(request.table, "UseFixedTime").boolean().value_or(false));
+  provider->interpolation.put(valueAt(request.table, "Interpolation").boolean().value_or(false));
   if (Result<void> read = provider->readFixedTime(); !read) {
     read.error().where = placeOf(request, "FixedTime");
     return tl::make_unexpected(std::move(read.error()));
@@ -121,6 +110,7 @@ TemporalTileProvider::TemporalTileProvider(ProviderRequest request, std::unique_
   }
   owner_.addProperty(useFixedTime);
   owner_.addProperty(fixedTime);
+  owner_.addProperty(interpolation);
 }
 
 Result<void> TemporalTileProvider::readFixedTime() {
@@ -131,7 +121,21 @@ Result<void> TemporalTileProvider::readFixedTime() {
   return readDate(fixedTime.get()).map([this](Time::UtcInstant instant) { fixed_ = instant; });
 }
 
+std::string TemporalTileProvider::colormapPath() const {
+  const std::string* path = valueAt(request_.table, "Colormap").string();
+  return path == nullptr || path->empty() ? std::string() : dataPath(*path, request_.folder).text;
+}
+
 Result<void> TemporalTileProvider::check() const {
+  std::error_code code;
+  if (const std::string path = colormapPath(); !path.empty() && !std::filesystem::is_regular_file(path, code)) {
+    return failure("the colormap " + path + " does not exist", placeOf(request_, "Colormap"),
+                   "check Colormap; a relative path starts at the asset's folder");
+  }
+  return checkSeries();
+}
+
+Result<void> TemporalTileProvider::checkSeries() const {
   return isNamed_ ? checkData(dataPath(*valueAt(request_.table, "FilePath").string(), request_.folder),
                               placeOf(request_, "FilePath"))
                   : series_->check();
@@ -147,11 +151,20 @@ Result<void> TemporalTileProvider::openData() {
   }
   if (isNamed_) {
     Result<std::unique_ptr<TimeSeries>> series = openSeries();
-    opening_.reset();
+    if (opening_ != nullptr) {
+      opening_->end();
+    }
     if (!series) {
       return tl::make_unexpected(std::move(series.error()));
     }
     series_ = std::move(*series);
+  }
+  if (const std::string path = colormapPath(); !path.empty()) {
+    Result<std::shared_ptr<const Colormap>> colormap = Colormap::read(path, placeOf(request_, "Colormap"));
+    if (!colormap) {
+      return tl::make_unexpected(std::move(colormap.error()));
+    }
+    colormap_ = std::move(*colormap);
   }
   return series_->open();
 }
@@ -173,13 +186,13 @@ Result<std::unique_ptr<TimeSeries>> TemporalTileProvider::openSeries() {
   }
   // Relative paths in the file start at the file.
   rasters_.folder = std::filesystem::path(path.text).parent_path().string();
-  return readDocument(path.text, placeOf(request_, "FilePath")).and_then([&](const std::string& text) {
-    return seriesOf(text, rasters_);
-  });
+  return readTextFile(path.text, mostDocumentBytes, placeOf(request_, "FilePath"),
+                      "name an <OpenSpaceTemporalGDALDataset>, or use Mode, Prototyped and Folder")
+      .and_then([&](const std::string& text) { return seriesOf(text, rasters_); });
 }
 
 TimeSeries::Entry TemporalTileProvider::entryAt(const Time& now) const {
-  return useFixedTime.get() && fixed_ ? series_->atFixed(*fixed_) : series_->at(now.utcInstant());
+  return isFixed() ? series_->atFixed(*fixed_) : series_->at(now.utcInstant());
 }
 
 TileStep TemporalTileProvider::at(const Time& now) const {
@@ -188,11 +201,14 @@ TileStep TemporalTileProvider::at(const Time& now) const {
   step.id = static_cast<std::uint64_t>(entry.instant.time_since_epoch().count());
   step.begin = entry.begin ? Time::fromUtcInstant(*entry.begin) : step.begin;
   step.end = entry.end ? Time::fromUtcInstant(*entry.end) : step.end;
+  step.instant = Time::fromUtcInstant(entry.instant);
   return step;
 }
 
 Result<std::shared_ptr<TileProvider>> TemporalTileProvider::make(const Time& now) const {
-  return series_->tiles(entryAt(now).instant, rasters_);
+  return series_->tiles(entryAt(now).instant, rasters_).map([this](std::shared_ptr<TileProvider> values) {
+    return colormap_ == nullptr ? values : std::make_shared<ColormappedTileProvider>(std::move(values), colormap_);
+  });
 }
 
 Result<std::shared_ptr<TileProvider>> RasterSeries::tiles(Instant entry, const ProviderRequest& rasters) const {

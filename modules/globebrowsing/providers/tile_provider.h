@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <stop_token>
+#include <string_view>
 
 #include "globebrowsing/source/pixel_source.h"
 #include "globebrowsing/streaming/worker_pool.h"
@@ -52,6 +53,9 @@ class TileProvider {
   [[nodiscard]] std::optional<Error> error() const;
   /// Of a Ready one whose data come from elsewhere: why some are not there yet, while they are tried again and again.
   [[nodiscard]] virtual std::optional<Error> lastFailure() const { return std::nullopt; }
+  /// Whom its data are to be credited to, as far as they say so themselves; empty unless Ready. Good as long as the
+  /// provider.
+  [[nodiscard]] virtual std::string_view attribution() const { return {}; }
 
   /// Before open(): asks for what has to be fetched first. Returns whether nothing is missing. If not, `wake` is called
   /// once, from any thread, perhaps before this returns; then prepare again. On a worker; may read from disk, but waits

@@ -16,6 +16,7 @@ struct TileStep {
   std::uint64_t id = 0;  ///< equal ids of one provider mean the same tiles
   Time begin{-std::numeric_limits<double>::infinity()};
   Time end{std::numeric_limits<double>::infinity()};
+  Time instant{-std::numeric_limits<double>::infinity()};  ///< that the tiles are of; as a rule `begin`
 };
 
 /// The steps of a provider whose tiles change with time or with properties. Each step is a provider of its own, with a
@@ -32,6 +33,8 @@ class TileSteps {
   [[nodiscard]] virtual TileStep at(const Time& now) const = 0;
   /// The provider of at(now)'s tiles; usually unopened, and never one with steps.
   [[nodiscard]] virtual Result<std::shared_ptr<TileProvider>> make(const Time& now) const = 0;
+  /// Whether between the instants of two steps their mixture is wanted.
+  [[nodiscard]] virtual bool interpolates() const { return false; }
 };
 
 /// A provider that has no tiles but those of its steps.

@@ -11,8 +11,8 @@ namespace meridian::globebrowsing {
 
 namespace {
 
-/// libjpeg's state, with what its callbacks need, for one picture after another: to make it takes a fiftieth of a tile's
-/// time. Callbacks leave by longjmp, so nothing between may need a destructor.
+/// libjpeg's state, with what its callbacks need, for one picture after another: to make it takes a fiftieth of a
+/// tile's time. Callbacks leave by longjmp, so nothing between may need a destructor.
 struct Decompression {
   jpeg_decompress_struct info{};
   jpeg_error_mgr errors{};

@@ -21,4 +21,19 @@ Result<Fetched> readDocumentFile(const std::string& path) {
   return fetched;
 }
 
+Result<std::string> readTextFile(const std::string& path, std::size_t mostBytes, const std::string& where,
+                                 const std::string& remedy) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text(mostBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (file.bad() || (text.empty() && !file.eof())) {
+    return failure("the file " + path + " cannot be read", where, "check its permissions");
+  }
+  if (text.size() > mostBytes) {
+    return failure("the file " + path + " is longer than " + std::to_string(mostBytes) + " bytes", where, remedy);
+  }
+  return text;
+}
+
 }  // namespace meridian::globebrowsing

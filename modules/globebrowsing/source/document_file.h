@@ -19,4 +19,8 @@ inline constexpr std::size_t largestDocument = std::size_t{64} << 20;
 /// large.
 [[nodiscard]] Result<Fetched> readDocumentFile(const std::string& path);
 
+/// A text file. Errors: it cannot be read, or is longer than `mostBytes`; then `remedy` says what to do.
+[[nodiscard]] Result<std::string> readTextFile(const std::string& path, std::size_t mostBytes, const std::string& where,
+                                               const std::string& remedy);
+
 }  // namespace meridian::globebrowsing

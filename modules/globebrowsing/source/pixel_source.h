@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <string_view>
 
 #include "globebrowsing/source/resample.h"
 #include "globebrowsing/tiling/tiling.h"
@@ -57,6 +58,8 @@ class PixelSource {
   }
   /// Why data that were asked for are not there yet, where they are tried again and again.
   [[nodiscard]] virtual std::optional<Error> lastFailure() const { return std::nullopt; }
+  /// Whom the data themselves say they are to be credited to, on one line; good as long as the source.
+  [[nodiscard]] virtual std::string_view attribution() const { return {}; }
 };
 
 }  // namespace meridian::globebrowsing

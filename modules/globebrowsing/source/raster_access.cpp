@@ -9,6 +9,7 @@
 #include <gdal_priv.h>
 
 #include "globebrowsing/source/gdal_runtime.h"
+#include "globebrowsing/source/service_text.h"
 
 namespace meridian::globebrowsing {
 
@@ -33,6 +34,16 @@ int stepFor(const RasterLevel& level, GDALRasterBand& native) {
     step *= 2;
   }
   return step;
+}
+
+/// What GeoTIFF, photographs and PNG call it.
+std::string attributionOf(GDALDataset& dataset) {
+  for (const char* key : {"TIFFTAG_COPYRIGHT", "EXIF_Copyright", "Copyright"}) {
+    if (const char* text = dataset.GetMetadataItem(key)) {
+      return creditText(text);
+    }
+  }
+  return {};
 }
 
 SampleType sampleType(GDALRasterBand& band) {
@@ -129,6 +140,7 @@ Result<void> RasterAccess::examine() {
   info_.coversAllLongitudes = pyramid_.georeference.coversAllLongitudes();
   info_.isGeographic = pyramid_.georeference.isGeographic();
   info_.finestPixelAngle = pyramid_.georeference.finestPixelAngle();
+  info_.attribution = attributionOf(dataset);
   info_.heightScale = heightRule_.scale;
   info_.heightOffset = heightRule_.offset;
   return {};

@@ -56,6 +56,8 @@ struct RasterInfo {
   /// metres = stored value * heightScale + heightOffset, all of RasterDescription's rules applied.
   double heightScale = 1.0;
   double heightOffset = 0.0;
+
+  std::string attribution{};  ///< by its metadata, such as TIFFTAG_COPYRIGHT; on one line
 };
 
 /// A georeferenced raster in any format, CRS and data type that GDAL and PROJ read.
@@ -93,6 +95,8 @@ class RasterSource final : public PixelSource {
                                              std::stop_token stop) const override;
   [[nodiscard]] Result<HeightPixels> heights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
                                              std::stop_token stop) const override;
+
+  [[nodiscard]] std::string_view attribution() const override { return info().attribution; }
 
   /// Pixels kept in memory. Safe from any thread; grows as the raster is sampled, freed with the source.
   [[nodiscard]] std::size_t residentBytes() const;

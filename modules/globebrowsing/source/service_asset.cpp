@@ -127,10 +127,10 @@ Result<std::string> documentOfMaps(const Capabilities& capabilities, const TileS
   const bool isNew = isWmsThree(capabilities.version);
   std::string server(withoutQuery(address) + "?");
   for (const std::string& part : split(address.substr(std::min(address.find('?') + 1, address.size())), "&")) {
-    const std::string name = lowerCase(part.substr(0, part.find('=')));
-    const std::vector<std::string> own{"service", "version", "request", "layers", "styles", "crs",
-                                       "srs",     "bbox",    "width",   "height", "format", "transparent"};
-    server += std::find(own.begin(), own.end(), name) == own.end() ? part + "&" : std::string();
+    const std::string name = part.substr(0, part.find('='));
+    // The value is that of the day on which this is written.
+    const bool isOwn = isGetMapParameter(name) || (followsTime && lowerCase(name) == "time");
+    server += isOwn ? std::string() : part + "&";
   }
   const std::string crs = parameter(isNew ? "crs" : "srs");
   const auto known = MapCrs::of(replaceAll(crs, "%3A", ":"), capabilities.url);
@@ -216,6 +216,24 @@ Result<std::string> gdalWmsOf(const TileService& service) {
                               service.matrices.size() - 1, columns, rows));
 }
 
+std::string layersAsset(const std::string& globe, std::span<const PlacedLayer> layers) {
+  std::string tables;
+  std::string added;
+  std::string deleted;
+  std::string exported;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const std::string name = layers.size() == 1 ? "layer" : fmt::format("layer{}", i + 1);
+    const std::string arguments =
+        fmt::format("({}, {}, {})", Value(globe).toLua(), Value(layers[i].group).toLua(), name);
+    tables += fmt::format("local {} = {}\n\n", name, layers[i].table.toLua());
+    added += "  openspace.globebrowsing.addLayer" + arguments + '\n';
+    deleted.insert(0, "  openspace.globebrowsing.deleteLayer" + arguments + '\n');
+    exported += fmt::format("asset.export(\"{}\", {})\n", name, name);
+  }
+  return fmt::format("{}asset.onInitialize(function()\n{}end)\n\nasset.onDeinitialize(function()\n{}end)\n\n{}", tables,
+                     added, deleted, exported);
+}
+
 Result<LayerAsset> assetOf(const Capabilities& capabilities, const CapabilitiesLayer& layer,
                            const LayerChoices& choices, const AssetPlace& place) {
   auto service = serviceOf(capabilities, layer, choices);
@@ -240,17 +258,15 @@ Result<LayerAsset> assetOf(const Capabilities& capabilities, const CapabilitiesL
   table.fields["Identifier"] = identifierOf(layer.identifier.empty() ? layer.title : layer.identifier);
   table.fields["Name"] = layer.title;
   table.fields["Description"] = descriptionOf(layer);
+  if (!service->attribution.empty()) {
+    table.fields["Attribution"] = service->attribution;
+  }
   table.fields["FilePath"] = *path;
   table.fields["Enabled"] = true;
   LayerAsset asset;
   asset.table = Value(std::move(table));
-  const std::string globe = Value(place.globe).toLua();
-  const std::string group = Value(place.group).toLua();
-  asset.text = fmt::format(
-      "local layer = {}\n\nasset.onInitialize(function()\n  openspace.globebrowsing.addLayer({}, {}, layer)\nend)\n\n"
-      "asset.onDeinitialize(function()\n  openspace.globebrowsing.deleteLayer({}, {}, layer)\nend)\n\n"
-      "asset.export(\"layer\", layer)\n",
-      asset.table.toLua(), globe, group, globe, group);
+  const PlacedLayer placed{asset.table, place.group};
+  asset.text = layersAsset(place.globe, {&placed, 1});
   return asset;
 }
 

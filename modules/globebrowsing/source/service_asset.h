@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "globebrowsing/source/capabilities.h"
@@ -10,7 +11,8 @@ namespace meridian::globebrowsing {
 
 /// A layer of a service as assets have it.
 struct LayerAsset {
-  Value table{};       ///< for openspace.globebrowsing.addLayer: Identifier, Name, Description, FilePath, Enabled
+  Value
+      table{};  ///< for openspace.globebrowsing.addLayer: Identifier, Name, Description, Attribution, FilePath, Enabled
   std::string text{};  ///< the asset file: adds the layer on initialisation, deletes it again
 };
 
@@ -19,6 +21,14 @@ struct AssetPlace {
   std::string globe;                  ///< identifier of the globe's node
   std::string group = "ColorLayers";  ///< of its layers
 };
+
+/// A layer's table and the group that it goes into.
+struct PlacedLayer {
+  Value table{};
+  std::string group{};
+};
+/// An asset file that adds these layers to a globe on initialisation, in that order, and deletes them again.
+[[nodiscard]] std::string layersAsset(const std::string& globe, std::span<const PlacedLayer> layers);
 
 /// What to write of a layer of these capabilities. FilePath is what OpenSpace opens as well: for maps a `<GDAL_WMS>`
 /// document of the service WMS; for regular pyramids with plain numbers (most of WMTS, TMS and ArcGIS) one of the

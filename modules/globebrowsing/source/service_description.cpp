@@ -148,10 +148,14 @@ CapabilitiesReference referenceOfMaps(const pugi::xml_node& root) {
   reference.choices.crs = text(service, "CRS").empty() ? text(service, "SRS") : text(service, "CRS");
   reference.choices.isTransparent = boolean(text(service, "Transparent")).value_or(false);
   const std::string server = text(service, "ServerUrl");
-  for (const std::string& part : split(server.substr(std::min(server.find('?') + 1, server.size())), "&")) {
+  const std::size_t query = std::min(server.find('?'), server.size());
+  for (const std::string& part : split(server.substr(std::min(query + 1, server.size())), "&")) {
     const std::size_t equals = std::min(part.find('='), part.size());
     const std::string name = percentDecoded(part.substr(0, equals));
     const std::string value = percentDecoded(part.substr(std::min(equals + 1, part.size())));
+    if (name.empty() || isGetMapParameter(name)) {
+      continue;
+    }
     if (equalIgnoringCase(name, "time")) {
       reference.choices.time = value;
     } else {

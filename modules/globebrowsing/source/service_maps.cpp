@@ -252,7 +252,7 @@ Result<TileService> mapsOf(const Capabilities& capabilities, const CapabilitiesL
   service.where = capabilities.url;
   service.name = layer.title;
   service.crs = place->crs.definition();
-  service.attribution = layer.attribution.empty() ? capabilities.attribution : layer.attribution;
+  service.attribution = creditText(layer.attribution.empty() ? capabilities.attribution : layer.attribution);
   const bool isWhole = layer.isWholeOnly || (layer.fixedWidth > 0 && layer.fixedHeight > 0);
   auto matrices = isWhole ? wholeMatrix(capabilities, layer, place->extent) : pyramidOf(capabilities, layer, *place);
   if (auto set = setMatrices(service, std::move(matrices), place->extent); !set) {

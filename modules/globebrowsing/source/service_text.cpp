@@ -1,6 +1,8 @@
 #include "globebrowsing/source/service_text.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -53,6 +55,25 @@ std::vector<std::string> split(std::string_view text, std::string_view separator
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return parts;
+}
+
+std::string creditText(std::string_view text) {
+  std::string plain;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const bool mayBeTag = text[at] == '<' && at + 1 < text.size() &&
+                          (text[at + 1] == '/' || std::isalpha(static_cast<unsigned char>(text[at + 1])) != 0);
+    if (const std::size_t end = mayBeTag ? text.find('>', at) : std::string_view::npos; end != std::string_view::npos) {
+      plain += ' ';
+      at = end;
+    } else {
+      plain += text[at];
+    }
+  }
+  std::string line;
+  for (const std::string& word : split(plain, " \t\r\n")) {
+    line.append(line.empty() ? "" : " ").append(word);
+  }
+  return line;
 }
 
 std::string replaceAll(std::string text, std::string_view from, std::string_view to) {
@@ -173,6 +194,13 @@ std::optional<std::string> parameterOf(std::string_view url, std::string_view na
     }
   }
   return std::nullopt;
+}
+
+bool isGetMapParameter(std::string_view name) {
+  static constexpr std::array<std::string_view, 12> own{"service", "version", "request", "layers",
+                                                        "styles",  "crs",     "srs",     "bbox",
+                                                        "width",   "height",  "format",  "transparent"};
+  return std::find(own.begin(), own.end(), lowerCase(name)) != own.end();
 }
 
 std::string withoutQuery(std::string_view url) {

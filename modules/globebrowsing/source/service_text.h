@@ -27,6 +27,9 @@ namespace meridian::globebrowsing {
 /// At most ten decimals, no exponent (servers do not read it), no trailing zeros.
 [[nodiscard]] std::string decimal(double value);
 
+/// A credit on one line: white space in it as single blanks, tags of HTML left out.
+[[nodiscard]] std::string creditText(std::string_view text);
+
 /// Everything but unreserved characters (RFC 3986, section 2.3) and those of `kept` as %XX.
 [[nodiscard]] std::string percentEncoded(std::string_view text, std::string_view kept = {});
 
@@ -40,6 +43,8 @@ using QueryParameters = std::vector<std::pair<std::string, std::string>>;
 [[nodiscard]] std::string withParameters(std::string_view url, const QueryParameters& parameters);
 /// The value, still encoded, of a parameter of the query, its name in any case.
 [[nodiscard]] std::optional<std::string> parameterOf(std::string_view url, std::string_view name);
+/// Whether a GetMap request has a parameter of that name (in any case) of its own, whatever the server.
+[[nodiscard]] bool isGetMapParameter(std::string_view name);
 [[nodiscard]] std::string withoutQuery(std::string_view url);
 /// `reference` as seen from a document at `base` (RFC 3986, section 5.2, for http, https, file and plain paths).
 [[nodiscard]] std::string resolvedUrl(std::string_view base, std::string_view reference);

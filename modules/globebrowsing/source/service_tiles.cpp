@@ -175,7 +175,7 @@ Result<TileService> tilesOf(const Capabilities& capabilities, const Capabilities
   service.where = capabilities.url;
   service.name = layer.title;
   service.crs = crs.definition();
-  service.attribution = layer.attribution.empty() ? capabilities.attribution : layer.attribution;
+  service.attribution = creditText(layer.attribution.empty() ? capabilities.attribution : layer.attribution);
   if (auto placed = setMatrices(service, limited(set, **link), extentIn(crs, layer)); !placed) {
     placed.error().what = "the layer '" + layer.title + "' has no tiles within the extent that it declares";
     return tl::make_unexpected(std::move(placed.error()));

@@ -43,9 +43,7 @@ struct SourceTile {
     return {reinterpret_cast<const Rgba*>(rgba.data()), rgba.size() / sizeof(Rgba)};
   }
   [[nodiscard]] std::span<const float> pixels(const float*) const { return heights; }
-  [[nodiscard]] std::size_t bytes() const {
-    return sizeof(*this) + rgba.size() + heights.size() * sizeof(float);
-  }
+  [[nodiscard]] std::size_t bytes() const { return sizeof(*this) + rgba.size() + heights.size() * sizeof(float); }
 };
 using SourceTilePointer = std::shared_ptr<const SourceTile>;
 

@@ -34,6 +34,7 @@ class TiledServiceSource final : public PixelSource {
   [[nodiscard]] Result<HeightPixels> heights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
                                              std::stop_token stop) const override;
   [[nodiscard]] std::optional<Error> lastFailure() const override { return store_->lastFailure(*service_); }
+  [[nodiscard]] std::string_view attribution() const override { return service_->attribution; }
   [[nodiscard]] std::unique_ptr<ColourTask> colourTask(const Tiling& tiling, const TileIndex& index,
                                                        const TileLayout& layout) const override;
   [[nodiscard]] std::unique_ptr<HeightTask> heightTask(const Tiling& tiling, const TileIndex& index,

@@ -1,6 +1,7 @@
 #include "globebrowsing/source/time_dimension.h"
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 
 #include "globebrowsing/source/service_text.h"
@@ -8,6 +9,13 @@
 namespace meridian::globebrowsing {
 
 namespace {
+
+/// As for Time; with steps as long as periods may be, no year then leaves what std::chrono::year holds.
+constexpr CalendarMilliseconds startOfYear(int year) {
+  return std::chrono::milliseconds(std::chrono::sys_days(std::chrono::year(year) / 1 / 1).time_since_epoch()).count();
+}
+constexpr CalendarMilliseconds firstOfCalendar = startOfYear(-4000);
+constexpr CalendarMilliseconds lastOfCalendar = startOfYear(10'000) - 1;
 
 constexpr std::size_t mostProblems = 20;
 
@@ -113,6 +121,9 @@ void TimeDimension::addInterval(std::string_view part, CalendarMilliseconds now)
       return refuse("has no period that can be read");
     }
     period = *read;
+  }
+  if (start->at < firstOfCalendar || end->at > lastOfCalendar) {
+    return refuse("lies beyond the years -4000 to 9999");
   }
   if (start->at > end->at) {
     return refuse("ends before it begins");

@@ -160,7 +160,7 @@ def seconds_to_first_settled_frame(environment=None):
         start = time.perf_counter()
         run("meridian", *EARTH, "--headless", "--size", "1280x720", "--anchor", "Earth", "--camera", PLACES["orbit"],
             "--frames", 1, "--settle", 60, "--output", Path(folder, "frame.png"), "--stats", figures,
-            "--log", "warning", environment=environment, timeout=120)
+            "--log", "warning", "--set", "RenderEngine.ShowAttribution=false", environment=environment, timeout=120)
         seconds = time.perf_counter() - start
         if json.loads(figures.read_text())["settled"]["frames_timed_out"]:
             raise Failed("the frame did not settle within 60 s")

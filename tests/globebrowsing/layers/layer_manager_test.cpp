@@ -75,7 +75,7 @@ TEST_F(LayerManagerTest, AMovedLayerTakesItsNeighboursZ) {
 TEST_F(LayerManagerTest, PropertiesHangWhereScriptsExpectThem) {
   add("Blue", {{"Color", Value(glm::dvec3(0.0, 0.0, 1.0))}});
   for (const char* uri :
-       {"Type", "BlendMode", "Enabled", "Reset", "Remove", "Opacity", "Fade", "GuiDescription", "Color",
+       {"Type", "BlendMode", "Enabled", "Reset", "Remove", "Opacity", "Fade", "GuiDescription", "Attribution", "Color",
         "Settings.Gamma", "Settings.Multiplier", "Settings.Offset", "Settings.SetDefault", "Adjustment.Type",
         "Adjustment.ChromaKeyColor", "Adjustment.ChromaKeyTolerance", "Status", "LastError"}) {
     EXPECT_NE(manager_.propertyAt(std::string("ColorLayers.Blue.") + uri), nullptr) << uri;

@@ -40,8 +40,9 @@ class TestSeries final : public SteppedTileProvider {
  public:
   TileStep at(const Time& now) const override {
     const double n = std::floor(std::clamp(now.tdbSeconds(), 0.0, 99'999.0) / 100.0);
-    return {static_cast<std::uint64_t>(n), Time(100.0 * n), Time(100.0 * (n + 1.0))};
+    return {static_cast<std::uint64_t>(n), Time(100.0 * n), Time(100.0 * (n + 1.0)), Time(100.0 * n + instant)};
   }
+  [[nodiscard]] bool interpolates() const override { return mixes; }
   Result<std::shared_ptr<TileProvider>> make(const Time& now) const override {
     ++made;
     auto step = std::make_shared<TestStep>(at(now).id != broken);
@@ -54,6 +55,8 @@ class TestSeries final : public SteppedTileProvider {
   }
 
   std::uint64_t broken = 1u << 30;
+  bool mixes = false;
+  double instant = 0.0;  ///< seconds after a step's begin
   mutable int made = 0;
   mutable std::vector<std::weak_ptr<TestStep>> alive;
 
@@ -217,6 +220,53 @@ TEST_F(StepPlayerTest, AStepThatCannotBeOpenedShowsNothing) {
   frame(250.0);
   frame(250.0);
   EXPECT_EQ(player_.error(), "");
+}
+
+TEST_F(StepPlayerTest, OpensTheStepBeyondTheMomentToMixWith) {
+  frame(125.0);
+  frame(125.0);
+  EXPECT_EQ(player_.other(), nullptr);
+  series_.mixes = true;
+  player_.update(series_, Time(125.0));
+  EXPECT_TRUE(player_.awaits());
+  workers_.drain();
+  for (const double time : {100.0, 125.0, 199.0, 160.0}) {
+    frame(time);
+    ASSERT_NE(player_.other(), nullptr);
+    EXPECT_EQ(shown(), 100.0);
+    EXPECT_EQ(player_.other()->when().begin.tdbSeconds(), 200.0);
+    EXPECT_DOUBLE_EQ(player_.otherWeight(), (time - 100.0) / 100.0);
+    EXPECT_FALSE(player_.awaits());
+  }
+  const LayerStepPointer other = player_.other();
+  frame(210.0);
+  EXPECT_EQ(player_.current(), other) << "not opened anew";
+  player_.rest();
+  EXPECT_EQ(player_.other(), nullptr);
+}
+
+TEST_F(StepPlayerTest, MixesBeforeTheInstantOfAStepThatIsShownAroundIt) {
+  series_.mixes = true;
+  series_.instant = 50.0;
+  for (const double time : {120.0, 120.0, 120.0, 190.0, 190.0}) {
+    frame(time);
+  }
+  EXPECT_EQ(player_.other()->when().begin.tdbSeconds(), 200.0);
+  EXPECT_DOUBLE_EQ(player_.otherWeight(), 0.4);
+  frame(120.0);
+  EXPECT_EQ(player_.other()->when().begin.tdbSeconds(), 0.0);
+  EXPECT_DOUBLE_EQ(player_.otherWeight(), 0.3);
+}
+
+TEST_F(StepPlayerTest, MixesNothingWithAStepThatIsNotThere) {
+  series_.mixes = true;
+  series_.broken = 2;
+  for (const double time : {150.0, 150.0, 150.0, 250.0, 250.0}) {
+    frame(time);
+    EXPECT_EQ(player_.other(), nullptr);
+  }
+  EXPECT_EQ(shown(), 200.0) << "which has nothing to show";
+  EXPECT_FALSE(player_.awaits());
 }
 
 TEST_F(StepPlayerTest, ForgetsAStreamWithItsStep) {

@@ -193,14 +193,16 @@ TEST_F(FadingTest, FadesInALayerThatIsEnabledAndOutOneThatIsThenDisabled) {
   EXPECT_LE(greatestDifference(picture(), without), 0);
   for (int n = 1; n <= 50; ++n) {
     upper.fade.put(n / 50.0);
-    ASSERT_TRUE(settle());
+    frame();
   }
+  ASSERT_TRUE(settle());
   const std::uint64_t fadedIn = store(globe).composedCount();
   EXPECT_GT(greatestDifference(picture(), without), 50);
   for (int n = 49; n >= 0; --n) {
     upper.fade.put(n / 50.0);
-    ASSERT_TRUE(settle());
+    frame();
   }
+  ASSERT_TRUE(settle());
   upper.enabled.put(false);
   ASSERT_TRUE(settle());
   EXPECT_LE(greatestDifference(picture(), without), 0);

@@ -64,10 +64,14 @@ class FakeHost final : public Host {
     return names;
   }
 
-  [[nodiscard]] ScriptPlace scriptPlace() const override { return {"test.lua:1", folder}; }
+  [[nodiscard]] ScriptPlace scriptPlace() const override { return {"test.lua:1", folder, isAsset}; }
   [[nodiscard]] Result<std::filesystem::path> readablePath(std::string_view path) const override {
     return std::filesystem::path(path).is_absolute() ? std::filesystem::path(path)
                                                      : folder / std::filesystem::path(path);
+  }
+  [[nodiscard]] Result<std::filesystem::path> writablePath(std::string_view path) const override {
+    return path.find("..") == std::string_view::npos ? readablePath(path)
+                                                     : failure("scripts may not write there", std::string(path));
   }
   [[nodiscard]] Result<Value> readLuaData(const std::filesystem::path& file) const override {
     return scripting::readLuaData(file);
@@ -78,6 +82,7 @@ class FakeHost final : public Host {
   }
 
   std::string folder;
+  bool isAsset = false;  ///< as what scripts run
   std::vector<Value> addedNodes;
   std::map<std::string, RenderableFactory> factories;
   std::vector<ScriptLibrary> libraries;

@@ -181,5 +181,49 @@ TEST_F(LayerChangesTest, MixesATransparentGlobeWithWhatIsBehind) {
   EXPECT_THAT(centre(), colour(128, 128, 128));
 }
 
+TEST_F(LayerChangesTest, AnotherFilePathOpensTheLayerAnew) {
+  RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({fileLayer("A", uniformRaster("red.tif", {200, 0, 0}))})}});
+  uniformRaster("green.tif", {0, 200, 0});
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(centre(), (Pixel{200, 0, 0}));
+  Property* path = globe.layers().propertyAt("ColorLayers.A.TileProvider.FilePath");
+  ASSERT_NE(path, nullptr);
+  ASSERT_TRUE(path->set("green.tif")) << "beside the asset";
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(centre(), (Pixel{0, 200, 0}));
+
+  const Layer& layer = *globe.layers().group(LayerGroupId::ColorLayers).find("A");
+  ASSERT_TRUE(path->set("missing.tif"));
+  ASSERT_TRUE(framesUntil([&] { return layer.status.get() == "failed"; }));
+  EXPECT_NE(layer.lastError.get().find("missing.tif"), std::string::npos) << layer.lastError.get();
+  ASSERT_TRUE(path->set(""));
+  frame();
+  EXPECT_NE(layer.lastError.get().find("FilePath is empty"), std::string::npos) << layer.lastError.get();
+  ASSERT_TRUE(path->set("red.tif"));
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(centre(), (Pixel{200, 0, 0}));
+  EXPECT_EQ(layer.lastError.get(), "");
+  EXPECT_EQ(globe.layers().propertyAt("ColorLayers.A.TileProvider.FilePath"), path) << "it is still the same property";
+  EXPECT_EQ(globe.layers().propertyAt("ColorLayers.A.TileProvider.FolderPath"), nullptr);
+  EXPECT_TRUE(globe.layers().propertyAt("ColorLayers.A.TileProvider.TilePixelSize")->set(256));
+}
+
+TEST_F(LayerChangesTest, AnotherFolderPathOpensTheSequenceAnew) {
+  for (const auto& [folder, colour] : {std::pair{"red", Pixel{200, 0, 0}}, std::pair{"green", Pixel{0, 200, 0}}}) {
+    std::filesystem::create_directories(folder_ / folder);
+    uniformRaster(std::string(folder) + "/a.tif", colour);
+  }
+  RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({tableOf({{"Identifier", "A"},
+                                                                      {"Type", "ImageSequenceTileProvider"},
+                                                                      {"FolderPath", "red"},
+                                                                      {"Enabled", true}})})}});
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(centre(), (Pixel{200, 0, 0}));
+  ASSERT_TRUE(globe.layers().propertyAt("ColorLayers.A.TileProvider.FolderPath")->set("green"));
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(centre(), (Pixel{0, 200, 0}));
+  EXPECT_NE(globe.layers().propertyAt("ColorLayers.A.TileProvider.Index"), nullptr);
+}
+
 }  // namespace
 }  // namespace meridian::globebrowsing

@@ -7,6 +7,7 @@
 #include "globebrowsing/globe_services.h"
 #include "support/nginx_server.h"
 #include "support/server_process.h"
+#include "support/timed_pyramid.h"
 #include "support/world_raster.h"
 
 namespace meridian::globebrowsing {
@@ -75,14 +76,41 @@ TEST_F(MapServiceTest, TheViewWaitsForAServerThatIsDown) {
   }
 }
 
+TEST_F(MapServiceTest, LayersOfCapabilitiesWaitForAServerThatIsDown) {
+  setModuleProperty("NetworkCacheMode", "off");
+  const int port = freePort();
+  const std::string address = "http://127.0.0.1:" + std::to_string(port);
+  const TimedPyramid pyramid{.days = 2, .levels = 2};
+  std::filesystem::create_directories(folder_ / "days");
+  pyramid.write((folder_ / "days").string(), address);
+  time_ = TimedPyramid::timeOf(1);
+  const std::string path = TimedPyramid::filePath(address);
+  auto& globe =
+      addGlobe({{"ColorLayers",
+                 listOf({fileLayer("Days", path), fileLayer("Pinned", path, {{"Type", "DefaultTileProvider"}})})}});
+  for (const char* name : {"Days", "Pinned"}) {
+    const Layer& layer = *globe.layers().group(LayerGroupId::ColorLayers).find(name);
+    ASSERT_TRUE(framesUntil([&] { return !layer.lastError.get().empty(); })) << name;
+    EXPECT_THAT(layer.lastError.get(), HasSubstr(std::to_string(port)));
+    EXPECT_EQ(layer.status.get(), "opening");
+  }
+  const ServerProcess server(ServerProcess::fileServer((folder_ / "days").string(), port), port);
+  for (const char* name : {"Days", "Pinned"}) {
+    const Layer& layer = *globe.layers().group(LayerGroupId::ColorLayers).find(name);
+    ASSERT_TRUE(framesUntil([&] { return layer.status.get() == "ready" && layer.lastError.get().empty(); }))
+        << name << ": " << layer.status.get() << ", " << layer.lastError.get();
+  }
+  EXPECT_TRUE(settle());
+}
+
 /// Of the module's services, without graphics.
 class CapabilitiesLoaderTest : public testing::Test {
  protected:
   CapabilitiesLoaderTest() {
     std::string name = (std::filesystem::temp_directory_path() / "meridian-capabilities-XXXXXX").string();
     folder_ = ::mkdtemp(name.data());
-    std::ofstream(folder_ / "tilemapresource.xml")
-        << R"(<TileMap version="1.0.0"><Title>The world</Title><SRS>EPSG:4326</SRS>
+    std::ofstream(folder_ / "tilemapresource.xml") << R"(<TileMap version="1.0.0"><Title>The world</Title>
+              <Attribution><Title>The makers</Title></Attribution><SRS>EPSG:4326</SRS>
               <BoundingBox minx="-180" miny="-90" maxx="180" maxy="90"/><Origin x="-180" y="-90"/>
               <TileFormat width="256" height="256" mime-type="image/png" extension="png"/>
               <TileSets profile="global-geodetic"><TileSet href="0" units-per-pixel="0.703125" order="0"/>
@@ -123,6 +151,13 @@ TEST_F(CapabilitiesLoaderTest, AServerOffersWhatAnAssetCanName) {
   EXPECT_EQ(offer->front().name, "The world");
   EXPECT_THAT(offer->front().url, HasSubstr("<GDAL_WMS>"));
   EXPECT_THAT(offer->front().url, HasSubstr(address));
+  EXPECT_EQ(offer->front().attribution, "The makers");
+  ASSERT_TRUE(offer->front().extent);
+  EXPECT_NEAR(offer->front().extent->west, -std::numbers::pi, 1e-9);
+  ASSERT_EQ(offer->front().styles.size(), 1U);
+  const Value& table = offer->front().styles.front().table;
+  EXPECT_EQ(*table.find("FilePath"), Value(offer->front().url));
+  EXPECT_EQ(*table.find("Attribution"), Value("The makers"));
 }
 
 TEST_F(CapabilitiesLoaderTest, CapabilitiesMayLieInAFile) {

@@ -1,4 +1,6 @@
 // A map service's times on the screen.
+#include <numeric>
+
 #include "globe_fixture.h"
 #include "support/nginx_server.h"
 #include "support/timed_pyramid.h"
@@ -33,6 +35,15 @@ class ServiceTimesTest : public GlobeTest {
     return TimedPicture::look(rgba, width, height, surelyGlobe);
   }
 
+  /// About the middle.
+  [[nodiscard]] double meanRed() const {
+    constexpr int side = 64;
+    std::vector<std::uint8_t> red(std::size_t{side} * side);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target_->framebuffer());
+    glReadPixels((width - side) / 2, (height - side) / 2, side, side, GL_RED, GL_UNSIGNED_BYTE, red.data());
+    return std::accumulate(red.begin(), red.end(), 0.0) / static_cast<double>(red.size());
+  }
+
   const TimedPyramid pyramid_{.days = 20, .levels = 2};
   std::unique_ptr<NginxServer> server_;
 };
@@ -63,6 +74,19 @@ TEST_F(ServiceTimesTest, PlaysThroughDaysAndIsNeverBlank) {
   const Layer& layer = *globe.layers().group(LayerGroupId::ColorLayers).find("Days");
   EXPECT_EQ(layer.lastError.get(), "");
   EXPECT_EQ(server_->accessLog().find(" 404 "), std::string::npos) << server_->accessLog();
+}
+
+TEST_F(ServiceTimesTest, IsInterpolated) {
+  addGlobe({{"ColorLayers",
+             listOf({fileLayer("Days", TimedPyramid::filePath(server_->http1()), {{"Interpolation", true}})})}});
+  for (const double days : {3.25, 3.75, 4.5, 2.5}) {
+    time_ = TimedPyramid::timeOf(days);
+    ASSERT_TRUE(settle());
+    const std::array<int, 3> first = TimedPyramid::colourOf(static_cast<int>(days));
+    const std::array<int, 3> second = TimedPyramid::colourOf(static_cast<int>(days) + 1);
+    const double expected = std::lerp(first[0], second[0], days - std::floor(days));
+    EXPECT_NEAR(meanRed(), expected, 2.0) << "at day " << days;
+  }
 }
 
 TEST_F(ServiceTimesTest, JumpsToATimeAndBack) {

@@ -75,6 +75,8 @@ TEST(ReliefProvider, ReadsARampFileWhenItIsOpened) {
   EXPECT_NE(opened.error().message().find("bad.txt"), std::string::npos);
   EXPECT_NE(opened.error().message().find("wite"), std::string::npos);
   EXPECT_EQ(bad->relief()->ramp, nullptr);
+  bad->colourRamp.put("0 green\n4000 white\n");
+  EXPECT_NE(bad->relief()->ramp, nullptr) << "set while it runs";
   const auto none = make<RampProvider>({{"Type", "ColorRelief"}, {"ColorRampFile", "none.txt"}}, folder.path());
   EXPECT_FALSE(none->check());
   EXPECT_FALSE(none->open());

@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "globebrowsing/providers/colormap.h"
 #include "globebrowsing/providers/inner_providers.h"
+#include "host/api/property_owner.h"
 #include "provider_fixture.h"
 
 namespace meridian::globebrowsing {
@@ -126,6 +128,99 @@ TEST_F(TemporalTileProviderTest, KeepsToAFixedTime) {
   EXPECT_EQ(middleAt(*folder, "2004-02-01"), blue) << "past the last file";
 }
 
+/// An image of one row, 24-bit BMP.
+void writeRow(const std::string& path, const std::vector<std::array<int, 3>>& colours) {
+  const std::size_t row = (3 * colours.size() + 3) / 4 * 4;
+  std::string bytes(54 + row, '\0');
+  const auto put = [&](std::size_t at, std::size_t number) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      bytes[at + i] = static_cast<char>(number >> (8 * i) & 255U);
+    }
+  };
+  bytes[0] = 'B';
+  bytes[1] = 'M';
+  put(2, bytes.size());
+  put(10, 54);
+  put(14, 40);
+  put(18, colours.size());
+  put(22, 1);
+  bytes[26] = 1;
+  bytes[28] = 24;
+  for (std::size_t i = 0; i < colours.size(); ++i) {
+    for (std::size_t band = 0; band < 3; ++band) {
+      bytes[54 + 3 * i + band] = static_cast<char>(colours[i][2 - band]);
+    }
+  }
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+TEST_F(TemporalTileProviderTest, InterpolatesWhereAskedTo) {
+  EXPECT_FALSE(open(prototyped())->steps()->interpolates());
+  for (Fields fields : {prototyped(), inFolder(".")}) {
+    fields["Interpolation"] = true;
+    fields["FixedTime"] = "2004-03-01";
+    const auto provider = open(std::move(fields));
+    const TileSteps& steps = *provider->steps();
+    EXPECT_TRUE(steps.interpolates());
+    EXPECT_EQ(steps.at(timeOf("2004-02-10")).instant.utc(), "2004-02-01T00:00:00.000") << "of the first, too";
+    EXPECT_EQ(steps.at(timeOf("2004-03-10")).instant.utc(), "2004-03-01T00:00:00.000");
+    PropertyOwner& properties = *provider->properties();
+    ASSERT_TRUE(properties.property("UseFixedTime")->set(true));
+    EXPECT_FALSE(steps.interpolates()) << "a fixed time is one step";
+    ASSERT_TRUE(properties.property("UseFixedTime")->set(false));
+    ASSERT_TRUE(properties.property("Interpolation")->set(false));
+    EXPECT_FALSE(steps.interpolates());
+  }
+}
+
+TEST_F(TemporalTileProviderTest, ColoursTheFirstBandByAColormap) {
+  writeRow(folder_.path() + "/map.bmp", {{0, 0, 255}, {0, 255, 0}, {255, 0, 0}});
+  writeImage(folder_.path() + "/world.2004-03.ppm", {51, 200, 100});
+  Fields fields = inFolder(".");
+  fields["Colormap"] = "map.bmp";
+  const auto provider = open(fields);
+  EXPECT_EQ(middleAt(*provider, "2004-02-10"), (Colour{255, 0, 0, 255})) << "255 is the last colour";
+  EXPECT_EQ(middleAt(*provider, "2004-03-10"), (Colour{0, 102, 153, 255}))
+      << "51 / 255 is 0.4 of the way to the middle";
+  EXPECT_EQ(middleAt(*provider, "2004-04-10"), (Colour{0, 0, 255, 255})) << "0 is the first";
+  fields["Colormap"] = "";
+  EXPECT_EQ(middleAt(*open(fields), "2004-03-10"), (Colour{51, 200, 100, 255}));
+}
+
+TEST_F(TemporalTileProviderTest, KeepsTheAlphaOfWhatAColormapColours) {
+  writeRow(folder_.path() + "/map.bmp", {{9, 8, 7}});
+  const auto colormap = Colormap::read(folder_.path() + "/map.bmp", "here");
+  ASSERT_TRUE(colormap) << colormap.error().message();
+  ColourPixels pixels{1, {200, 1, 2, 77}, true, false};
+  (*colormap)->apply(pixels);
+  EXPECT_EQ(pixels.rgba, (std::vector<std::uint8_t>{9, 8, 7, 77}));
+  ColourPixels nothing;
+  (*colormap)->apply(nothing);
+  EXPECT_TRUE(nothing.rgba.empty());
+}
+
+TEST_F(TemporalTileProviderTest, SaysWhatIsWrongWithItsColormap) {
+  std::ofstream(folder_.path() + "/text.png") << "no image";
+  std::ofstream(folder_.path() + "/empty.png");
+  struct Case {
+    const char* colormap;
+    bool usable;
+    const char* what;
+  };
+  for (const Case& c : {Case{"gone.png", false, "gone.png does not exist"}, Case{".", false, "does not exist"},
+                        Case{"text.png", true, "text.png"}, Case{"empty.png", true, "empty.png"}}) {
+    Fields fields = inFolder(".");
+    fields["Colormap"] = c.colormap;
+    const auto made = makeProvider(requestFor(fields, folder_.path()));
+    ASSERT_TRUE(made);
+    EXPECT_EQ((*made)->check().has_value(), c.usable) << c.colormap;
+    const Result<void> opened = (*made)->open();
+    ASSERT_FALSE(opened) << c.colormap;
+    EXPECT_THAT(opened.error().message(), HasSubstr(c.what));
+    EXPECT_THAT(opened.error().message(), HasSubstr("mars.asset:4: Layers.ColorLayers[1].Colormap"));
+  }
+}
+
 TEST_F(TemporalTileProviderTest, AStepWithoutItsFileFailsAlone) {
   std::filesystem::remove(folder_.path() + "/world.2004-03.ppm");
   const auto provider = open(prototyped());
@@ -213,7 +308,7 @@ TEST_F(TemporalTileProviderTest, SaysWhatIsWrongWithItsData) {
         Case{inFolder("nothing"), true, "none of the 0 files"},
         Case{inFolder(".", "moon.%Y"), true, "none of the 5 files"},
         Case{{{"Type", "TemporalTileLayer"}, {"FilePath", "gone.xml"}}, false, "does not exist"},
-        Case{{{"Type", "TemporalTileLayer"}, {"FilePath", "large.xml"}}, true, "larger than"},
+        Case{{{"Type", "TemporalTileLayer"}, {"FilePath", "large.xml"}}, true, "longer than"},
         Case{{{"Type", "TemporalTileLayer"}, {"FilePath", "empty.xml"}}, true, "no XML"},
         Case{prototyped({{"Prototype", "gone/${OpenSpaceTimeId}.tif"}}), false, "does not exist"}}) {
     const auto made = makeProvider(requestFor(c.fields, folder_.path()));

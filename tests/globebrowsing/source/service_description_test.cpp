@@ -86,6 +86,38 @@ TEST(ServiceDescription, TellsWhatAFilePathIs) {
   EXPECT_FALSE(describeService("<GDAL_WMS>", "a.asset:1"));
 }
 
+TEST(ServiceDescription, OfAServersAddressOnlyWhatIsNoPartOfGetMapIsKept) {
+  const auto parametersOf = [](const std::string& server) {
+    return describe("<GDAL_WMS><Service name='WMS'><ServerUrl>" + server +
+                    "</ServerUrl><Layers>ice</Layers></Service><GetCapabilitiesUrl>https://h/c</GetCapabilitiesUrl>"
+                    "</GDAL_WMS>")
+        .reference->choices.parameters;
+  };
+  EXPECT_TRUE(parametersOf("https://h/wms").empty());
+  EXPECT_TRUE(parametersOf("https://h/wms?").empty());
+  const auto kept = parametersOf("https://h/wms?SERVICE=WMS&amp;Version=1.1.1&amp;key=a%20b&amp;LAYERS=x");
+  ASSERT_EQ(kept.size(), 1U);
+  EXPECT_EQ(kept.front(), std::pair(std::string("key"), std::string("a b")));
+}
+
+TEST(ServiceDescription, AWrittenLayerFollowsTimeAlsoWithoutADefault) {
+  const auto capabilities = parse(
+      "<WMS_Capabilities version='1.3.0'><Capability><Request><GetMap><Format>image/png</Format><DCPType><HTTP><Get>"
+      "<OnlineResource xmlns:xlink='http://www.w3.org/1999/xlink' xlink:href='http://h/wms?'/></Get></HTTP></DCPType>"
+      "</GetMap></Request><Layer><Title>All</Title><CRS>CRS:84</CRS><EX_GeographicBoundingBox><westBoundLongitude>-180"
+      "</westBoundLongitude><eastBoundLongitude>180</eastBoundLongitude><southBoundLatitude>-90</southBoundLatitude>"
+      "<northBoundLatitude>90</northBoundLatitude></EX_GeographicBoundingBox><Layer><Name>ice</Name><Title>Ice</Title>"
+      "<Dimension name='time' units='ISO8601'>2001-01-01/2003-01-01/P1Y</Dimension></Layer></Layer></Capability>"
+      "</WMS_Capabilities>");
+  ASSERT_TRUE(capabilities) << capabilities.error().message();
+  const auto asset = assetOf(*capabilities, capabilities->layers.back(), {}, {"Earth", "ColorLayers"});
+  ASSERT_TRUE(asset) << asset.error().message();
+  const std::string& path = *asset->table.find("FilePath")->string();
+  const ServiceDescription again = describe(path);
+  ASSERT_TRUE(again.reference) << path;
+  EXPECT_EQ(again.reference->choices.time, "") << path;
+}
+
 TEST(ServiceDescription, GetMapAddressesAreLayers) {
   const ServiceDescription old = describe(
       "WMS:http://h/w?map=m&SERVICE=WMS&VERSION=1.1.1&REQUEST=GetMap&LAYERS=a,b&STYLES=&SRS=EPSG:4326&"

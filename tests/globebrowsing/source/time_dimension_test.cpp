@@ -197,6 +197,16 @@ TEST(TimeDimension, KeepsTheRestOfWhatIsMalformed) {
   EXPECT_FALSE(dimension("", "current").defaultValue());
 }
 
+TEST(TimeDimension, IntervalsBeyondTheCalendarAreRefused) {
+  for (const char* values :
+       {"19999-01-01/20000-01-01/P16384Y", "2000-01-01/P20000Y/P1Y", "-9999-01-01/2000-01-01/P1Y"}) {
+    const TimeDimension beyond = dimension(values);
+    EXPECT_TRUE(beyond.isEmpty()) << values;
+    EXPECT_EQ(beyond.problems().size(), 1U) << values;
+  }
+  EXPECT_EQ(dimension("-4000-01-01/9999-12-31/P20000Y").count(), 1U);
+}
+
 TEST(TimeDimension, RealOnesAreUnderstood) {
   const std::string path = sharedData("time_dimensions.tsv");
   MERIDIAN_NEEDS(path);

@@ -340,6 +340,36 @@ TEST_F(CommandLine, SaysWhichRasterCannotBeUsed) {
   EXPECT_THAT(checked.errors, HasSubstr("text.tif"));
 }
 
+TEST_F(CommandLine, PicturesSayWhomTheirDataAreToBeCreditedTo) {
+  write("globe.asset", R"(
+    local globe = { Identifier = "Globe", Renderable = { Type = "RenderableGlobe", Radii = 6e6, PerformShading = false,
+      Layers = { ColorLayers = {
+        { Identifier = "Seen", Type = "SolidColor", Color = { 0.5, 0.5, 0.5 }, Enabled = true,
+          Attribution = "\u{a9} The\n  makers" },
+        { Identifier = "Off", Type = "SolidColor", Color = { 1, 0, 0 }, Attribution = "Others" } } } } }
+    asset.onInitialize(function() openspace.addSceneGraphNode(globe) end)
+  )");
+  if (run("--validate globe.asset").out.find("globes 1") == std::string::npos) {
+    GTEST_SKIP() << "built without the module that brings globes";
+  }
+  const std::string arguments = "globe.asset --headless --size 320x200 --camera 0,0,3e6 --settle 30 --output ";
+  const Outcome shown = run(arguments + "shown.png");
+  ASSERT_EQ(shown.code, 0) << shown.errors;
+  ASSERT_EQ(run(arguments + "bare.png --set RenderEngine.ShowAttribution=false").code, 0);
+  const auto with = meridian::graphics::readPng(in("shown.png")).value();
+  const auto without = meridian::graphics::readPng(in("bare.png")).value();
+  EXPECT_EQ(with.metadata.at("Copyright"), "\u00a9 The makers");
+  EXPECT_EQ(without.metadata, with.metadata) << "words are no part of the picture";
+  std::size_t first = with.pixels.size();
+  for (std::size_t i = 0; i < with.pixels.size(); ++i) {
+    if (with.pixels[i] != without.pixels[i]) {
+      first = std::min(first, i / 4 / 320);
+    }
+  }
+  EXPECT_GT(first, 180U) << "the first row that differs";
+  EXPECT_LT(first, 200U);
+}
+
 TEST_F(CommandLine, AnUnwritableCacheOnlyWarns) {
   emptyScene();
   const Outcome outcome = run("empty.asset --headless --size 8x8 --output picture.png", "XDG_CACHE_HOME=/dev/null");

@@ -74,6 +74,19 @@ TEST_F(FrameWriterTest, FolderGetsEveryPictureInOrder) {
   EXPECT_FALSE(fs::exists(in("frames/frame_000003.png")));
 }
 
+TEST_F(FrameWriterTest, PicturesCarryTheirWords) {
+  for (const char* path : {"last.png", "frames"}) {
+    auto writer = FrameWriter::open(in(path), size, 25.0);
+    ASSERT_TRUE(writer);
+    graphics::Image image = picture(1, 2, 3);
+    image.metadata["Copyright"] = "\u00a9 Somebody | NASA";
+    ASSERT_TRUE((*writer)->write(image));
+    ASSERT_TRUE((*writer)->close());
+    const fs::path file = fs::is_directory(in(path)) ? in(path) / "frame_000000.png" : in(path);
+    EXPECT_EQ(graphics::readPng(file).value().metadata, image.metadata);
+  }
+}
+
 TEST_F(FrameWriterTest, ANameWithoutExtensionIsAFolderAndSoIsAFolderWithADot) {
   fs::create_directories(in("v1.0"));
   EXPECT_EQ(FrameWriter::kindOf(in("frames")).value(), FrameWriter::Kind::Folder);
@@ -114,6 +127,7 @@ struct Video {
   glm::ivec2 size{0};
   double fps = 0.0;
   double seconds = 0.0;
+  std::string copyright;
 };
 
 Video readVideo(const fs::path& file) {
@@ -133,6 +147,9 @@ Video readVideo(const fs::path& file) {
   video.size = {codec->width, codec->height};
   video.fps = av_q2d(stream->avg_frame_rate);
   video.seconds = static_cast<double>(format->duration) / AV_TIME_BASE;
+  if (const AVDictionaryEntry* entry = av_dict_get(format->metadata, "copyright", nullptr, 0)) {
+    video.copyright = entry->value;
+  }
   AVPacket* packet = av_packet_alloc();
   AVFrame* frame = av_frame_alloc();
   const auto drain = [&] {
@@ -163,6 +180,21 @@ TEST_P(VideoTest, HoldsEveryPictureAtItsRate) {
   EXPECT_EQ(video.size, glm::ivec2(64, 32));
   EXPECT_NEAR(video.fps, 25.0, 0.01);
   EXPECT_NEAR(video.seconds, 3.0 / 25.0, 0.05);
+}
+
+TEST_P(VideoTest, NamesWhomItsPicturesAreToBeCreditedTo) {
+  auto writer = FrameWriter::open(in(GetParam()), size, 25.0);
+  ASSERT_TRUE(writer);
+  for (const char* credit : {"A \u00a9", "A \u00a9", "B"}) {
+    graphics::Image image = picture(1, 2, 3);
+    image.metadata["Copyright"] = credit;
+    ASSERT_TRUE((*writer)->write(std::move(image)));
+  }
+  ASSERT_TRUE((*writer)->close());
+  const Video video = readVideo(in(GetParam()));
+  EXPECT_EQ(video.frames, 3);
+  const bool knowsAtItsEnd = in(GetParam()).extension() == ".mp4" || in(GetParam()).extension() == ".mov";
+  EXPECT_EQ(video.copyright, knowsAtItsEnd ? "A \u00a9 | B" : "A \u00a9");
 }
 
 INSTANTIATE_TEST_SUITE_P(FrameWriter, VideoTest, ::testing::Values("a.mp4", "a.mkv", "a.mov", "a.webm"),

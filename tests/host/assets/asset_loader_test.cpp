@@ -309,6 +309,22 @@ TEST_F(AssetLoaderTest, ScriptsAddAndRemoveAssets) {
                   "test"));
 }
 
+TEST_F(AssetLoaderTest, ScriptsReloadAssetsAndAskWhoRequiresThem) {
+  folder_.write("base.asset", "openspace.note('base')");
+  folder_.write("a.asset", "asset.require('./base') openspace.note('a')");
+  ASSERT_TRUE(engine_.run("openspace.asset.add('a')", "test"));
+  EXPECT_EQ(notes_, "base a ");
+  folder_.write("a.asset", "asset.require('./base') openspace.note('b')");
+  ASSERT_TRUE(engine_.run("openspace.asset.reload('a')", "test"));
+  EXPECT_EQ(notes_, "base a base b ");
+  ASSERT_TRUE(
+      engine_.run("local p = openspace.asset.parents('base') assert(#p == 1 and p[1]:find('a.asset')) "
+                  "assert(#openspace.asset.parents('a') == 0)",
+                  "test"));
+  EXPECT_FALSE(engine_.run("openspace.asset.reload('base')", "test")) << "nobody added it";
+  ASSERT_TRUE(engine_.run("openspace.asset.removeAll() assert(#openspace.asset.allAssets() == 0)", "test"));
+}
+
 TEST_F(AssetLoaderTest, FindsTheAssetsFolder) {
   const auto file = folder_.write("assets/earth/globe.asset", "");
   EXPECT_EQ(assetsFolder(file, "/else"), folder_.path() / "assets");

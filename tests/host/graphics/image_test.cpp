@@ -29,7 +29,8 @@ TEST(Image, ComesBackWithItsAlphaAndItsWords) {
   const glm::ivec2 size(37, 11);
   const auto path = file("alpha.png");
   const auto pixels = pattern(size);
-  const ImageMetadata words{{"Software", "Meridian"}, {"Time", "2026-11-22T21:17:05"}};
+  const ImageMetadata words{
+      {"Software", "Meridian"}, {"Time", "2026-11-22T21:17:05"}, {"Copyright", "\u00a9 D\u00fcrer"}};
   const auto written = writePng(path, pixels, size, {.alpha = true, .metadata = words});
   ASSERT_TRUE(written.has_value()) << written.error().message();
   const auto read = readPng(path);

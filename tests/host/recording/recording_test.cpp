@@ -11,6 +11,7 @@
 #include "host/navigation/geodetic_pose.h"
 #include "host/recording/player.h"
 #include "host/recording/recorder.h"
+#include "host/recording/recording_scripts.h"
 #include "host/recording/session_recording.h"
 #include "smooth_ground.h"
 
@@ -266,6 +267,133 @@ TEST(Recorder, WritesWhatThePlayerPlays) {
   EXPECT_EQ(camera.pose().position, pose.position);
   std::filesystem::remove(file);
   EXPECT_FALSE(Recorder::create("/nowhere/at.all"));
+}
+
+/// Scripts that record and play, in a scene of one node.
+class RecordingScripts : public testing::Test {
+ protected:
+  RecordingScripts() {
+    std::filesystem::remove_all(folder_);
+    EXPECT_TRUE(scene_.addNode(staticNode("A", {1e11, 0, 0}, {0, 0, 0}), "test", "/"));
+    const auto place = [this](std::string_view path) -> Result<std::filesystem::path> {
+      return path.starts_with('/') ? Result<std::filesystem::path>(failure("not there"))
+                                   : Result<std::filesystem::path>(folder_ / path);
+    };
+    engine_.registerLibrary(recordingLibrary(control_, {place, place, folder_ / "progress" / "session.osrectxt"}));
+  }
+  ~RecordingScripts() override { std::filesystem::remove_all(folder_); }
+
+  std::string run(const std::string& call) {
+    const auto done = engine_.run("openspace.sessionRecording." + call, "test.lua");
+    return done ? "" : done.error().message();
+  }
+  bool is(const std::string& question) {
+    return engine_.evaluate("openspace.sessionRecording." + question + "()", "test.lua").value().front() == Value(true);
+  }
+  void frame(double seconds) {
+    clock_.advance(seconds);
+    scene_.evaluate(clock_.time());
+    control_.play(seconds);
+    ASSERT_TRUE(control_.record(seconds));
+  }
+  /// Two seconds along x.
+  void recordTwoSeconds() {
+    clock_.setTime(Time(1000.0));
+    for (int i = 0; i <= 4; ++i) {
+      ASSERT_TRUE(camera_.setPose("A", {{100.0 * i, 0, 1e7}, glm::dquat(1, 0, 0, 0)}));
+      frame(i == 0 ? 0.0 : 0.5);
+    }
+  }
+  double x() const { return camera_.pose().position.x; }
+
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
+  scene::Scene scene_;
+  navigation::Camera camera_{scene_};
+  scripting::Clock clock_;
+  scripting::ScriptEngine engine_;
+  SessionControl control_{camera_, clock_, engine_};
+};
+
+TEST_F(RecordingScripts, WhatIsRecordedIsPlayed) {
+  EXPECT_EQ(run("startRecording()"), "");
+  EXPECT_TRUE(is("isRecording"));
+  EXPECT_THAT(run("startRecording('b')"), HasSubstr("already"));
+  EXPECT_THAT(run("startPlayback('b')"), HasSubstr("already"));
+  recordTwoSeconds();
+  EXPECT_EQ(run("stopRecording('a.osrectxt', 'Ascii')"), "");
+  EXPECT_FALSE(is("isRecording"));
+  EXPECT_THAT(run("stopRecording()"), HasSubstr("nothing is recorded"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a.osrectxt"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "progress/session.osrectxt"));
+
+  clock_.setTime(Time(5000.0));
+  EXPECT_EQ(run("startPlayback('a.osrectxt')"), "");
+  EXPECT_EQ(clock_.time().tdbSeconds(), 1000.0);
+  frame(0.0);
+  EXPECT_NEAR(x(), 0.0, 1e-6);
+  frame(0.75);
+  EXPECT_NEAR(x(), 150.0, 1e-6);
+  EXPECT_TRUE(is("isPlayingBack"));
+  frame(2.0);
+  EXPECT_NEAR(x(), 400.0, 1e-6);
+  EXPECT_FALSE(is("isPlayingBack"));
+  EXPECT_TRUE(control_.hasPlayed());
+}
+
+TEST_F(RecordingScripts, PlaybackPausesWithTheTimeAndStops) {
+  EXPECT_EQ(run("startRecording('a')"), "");
+  recordTwoSeconds();
+  EXPECT_EQ(run("stopRecording()"), "");
+  EXPECT_EQ(run("startPlayback('a')"), "");
+  frame(0.5);
+  EXPECT_EQ(run("togglePlaybackPause()"), "");
+  const double time = clock_.time().tdbSeconds();
+  frame(1.0);
+  EXPECT_NEAR(x(), 100.0, 1e-6);
+  EXPECT_EQ(clock_.time().tdbSeconds(), time);
+  EXPECT_TRUE(is("isPlayingBack"));
+  EXPECT_EQ(run("setPlaybackPause(false)"), "");
+  frame(0.5);
+  EXPECT_NEAR(x(), 200.0, 1e-6);
+  EXPECT_FALSE(clock_.isPaused());
+  EXPECT_EQ(run("stopPlayback()"), "");
+  frame(0.5);
+  EXPECT_NEAR(x(), 200.0, 1e-6);
+  EXPECT_FALSE(is("isPlayingBack"));
+  EXPECT_FALSE(control_.hasPlayed()) << "it was stopped";
+}
+
+TEST_F(RecordingScripts, LoopsUntilItIsStoppedEvenByItsOwnScript) {
+  SessionRecording recording;
+  recording.entries = {cameraAt(0.0, {0, 0, 1e7}, "A"), cameraAt(2.0, {200, 0, 1e7}, "A"),
+                       ScriptEntry{2.0, Time(),
+                                   "rounds = (rounds or 0) + 1 if rounds == 2 then "
+                                   "openspace.sessionRecording.stopPlayback() end"}};
+  std::filesystem::create_directories(folder_);
+  ASSERT_TRUE(writeSessionRecording(recording, folder_ / "loop"));
+  EXPECT_EQ(run("startPlayback('loop', true)"), "");
+  frame(3.0);
+  EXPECT_TRUE(is("isPlayingBack"));
+  frame(1.0);
+  EXPECT_NEAR(x(), 100.0, 1e-6);
+  frame(3.0);
+  EXPECT_FALSE(is("isPlayingBack"));
+  EXPECT_EQ(engine_.evaluate("rounds", "test.lua").value().front(), Value(2));
+}
+
+TEST_F(RecordingScripts, WritesOverNothingUnlessAsked) {
+  std::filesystem::create_directories(folder_);
+  std::ofstream(folder_ / "there") << "precious";
+  EXPECT_EQ(run("startRecording()"), "");
+  recordTwoSeconds();
+  EXPECT_THAT(run("stopRecording('there', 'Ascii')"), HasSubstr("already"));
+  EXPECT_TRUE(is("isRecording")) << "nothing is lost";
+  EXPECT_THAT(run("stopRecording('/else', 'Ascii')"), HasSubstr("not there"));
+  EXPECT_EQ(run("stopRecording('there', 'Binary', true)"), "");
+  EXPECT_TRUE(readSessionRecording(folder_ / "there"));
+  EXPECT_THAT(run("startPlayback('missing')"), HasSubstr("no such file"));
+  EXPECT_THAT(run("startPlayback(3)"), HasSubstr("must be a string"));
 }
 
 TEST(ShippedFlight, GoesFromSpaceLowAlongTheHimalayaAndUpAgain) {

@@ -1,0 +1,132 @@
+#include "host/recording/recording_scripts.h"
+
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "host/api/log.h"
+
+namespace meridian::recording {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Arguments = std::span<const Value>;
+
+ScriptResult none(const Result<void>& done) {
+  return done ? ScriptResult(std::vector<Value>{}) : tl::make_unexpected(done.error());
+}
+
+Result<std::string> textAt(Arguments arguments, std::size_t place) {
+  if (place < arguments.size() && arguments[place].string() != nullptr) {
+    return *arguments[place].string();
+  }
+  return failure("argument " + std::to_string(place + 1) + " must be a string");
+}
+
+/// False where it is left out.
+bool flagAt(Arguments arguments, std::size_t place) {
+  return place < arguments.size() && arguments[place].boolean().value_or(false);
+}
+
+Result<void> makeFolderOf(const fs::path& file) {
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  return error ? Result<void>(failure("the folder cannot be made: " + error.message(), file.string())) : Result<void>{};
+}
+
+Result<void> startRecording(SessionControl& control, const RecordingPaths& paths, Arguments arguments) {
+  Result<fs::path> file = paths.inProgress;
+  if (!arguments.empty()) {
+    file = textAt(arguments, 0).and_then(paths.writable);
+  }
+  return file.and_then([&](const fs::path& whole) {
+    return makeFolderOf(whole).and_then([&] { return control.startRecording(whole); });
+  });
+}
+
+Result<void> moveFile(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error) {  // on another disk
+    fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
+    std::error_code ignored;
+    fs::remove(from, ignored);
+  }
+  return error ? Result<void>(failure("the recording cannot be put there: " + error.message(), to.string()))
+               : Result<void>{};
+}
+
+/// With a path the recording is put there.
+Result<void> stopRecording(SessionControl& control, const RecordingPaths& paths, Arguments arguments) {
+  if (arguments.empty()) {
+    return control.stopRecording();
+  }
+  const Result<fs::path> file = textAt(arguments, 0).and_then(paths.writable);
+  if (!file) {
+    return tl::make_unexpected(file.error());
+  }
+  if (arguments.size() > 1 && arguments[1] == Value("Binary")) {
+    log::info("{}: recordings are written as ASCII, which is read like the others", file->string());
+  }
+  std::error_code ignored;
+  const bool isSame = *file == control.recordingFile();
+  if (!isSame && !flagAt(arguments, 2) && fs::exists(*file, ignored)) {
+    return failure("there is such a file already", file->string(), "name another one, or true as third argument");
+  }
+  return makeFolderOf(*file).and_then([&] { return control.stopRecording(); }).and_then([&] {
+    return isSame ? Result<void>{} : moveFile(control.recordingFile(), *file);
+  });
+}
+
+ScriptFunction playback(SessionControl& control, const RecordingPaths& paths, std::string name) {
+  return {std::move(name),
+          "file, loop?, waitForTiles?, framesPerSecond?",
+          "Plays a recording.",
+          1,
+          4,
+          [&control, paths](Arguments arguments) {
+            return none(textAt(arguments, 0).and_then(paths.readable).and_then([&](const fs::path& file) {
+              return control.startPlayback(file, flagAt(arguments, 1));
+            }));
+          }};
+}
+
+}  // namespace
+
+ScriptLibrary recordingLibrary(SessionControl& control, const RecordingPaths& paths) {
+  ScriptLibrary library{"sessionRecording", {}};
+  const auto add = [&](std::string name, std::string arguments, std::string description, std::size_t least,
+                       std::size_t most, std::function<ScriptResult(Arguments)> call) {
+    library.functions.push_back(
+        {std::move(name), std::move(arguments), std::move(description), least, most, std::move(call)});
+  };
+  const auto start = [&control, paths](Arguments a) { return none(startRecording(control, paths, a)); };
+  add("startRecording", "file?", "Records the session; without a file stopRecording names it.", 0, 1, start);
+  add("startRecordingAscii", "file", "As startRecording.", 1, 1, start);
+  add("stopRecording", "file?, format?, overwrite?", "Ends the recording and puts it there.", 0, 3,
+      [&control, paths](Arguments a) { return none(stopRecording(control, paths, a)); });
+  for (const char* name :
+       {"startPlayback", "startPlaybackApplicationTime", "startPlaybackRecordedTime", "startPlaybackSimulationTime"}) {
+    library.functions.push_back(playback(control, paths, name));
+  }
+  add("stopPlayback", "", "Ends the playback.", 0, 0, [&control](Arguments) {
+    control.stopPlayback();
+    return none({});
+  });
+  add("setPlaybackPause", "paused", "Pauses the playback and the time, or goes on.", 1, 1, [&control](Arguments a) {
+    control.setPlaybackPause(flagAt(a, 0));
+    return none({});
+  });
+  add("togglePlaybackPause", "", "Pauses the playback and the time, or goes on.", 0, 0, [&control](Arguments) {
+    control.setPlaybackPause(!control.isPlaybackPaused());
+    return none({});
+  });
+  add("isPlayingBack", "", "Whether a recording is played, paused or not.", 0, 0,
+      [&control](Arguments) -> ScriptResult { return std::vector<Value>{control.isPlaying()}; });
+  add("isRecording", "", "Whether the session is recorded.", 0, 0,
+      [&control](Arguments) -> ScriptResult { return std::vector<Value>{control.isRecording()}; });
+  return library;
+}
+
+}  // namespace meridian::recording

@@ -1,0 +1,134 @@
+#include "host/recording/session_control.h"
+
+#include <utility>
+
+#include "host/api/log.h"
+#include "host/recording/session_recording.h"
+
+namespace meridian::recording {
+
+SessionControl::SessionControl(navigation::Camera& camera, scripting::Clock& clock, scripting::ScriptEngine& scripts)
+    : camera_(camera), clock_(clock), scripts_(scripts) {
+  scripts.onQueuedScript([this](std::string_view text) {
+    if (recorder_) {
+      recorder_->addScript(text, clock_.time());
+    }
+  });
+}
+
+Result<void> SessionControl::requireIdle() const {
+  if (isRecording()) {
+    return failure("a session is recorded already", recordingFile_.string(),
+                   "stop that with openspace.sessionRecording.stopRecording()");
+  }
+  if (isPlaying() || isInPlay_) {
+    return failure("a recording is played already", {}, "stop it with openspace.sessionRecording.stopPlayback()");
+  }
+  return {};
+}
+
+Result<void> SessionControl::startRecording(const std::filesystem::path& file) {
+  return requireIdle().and_then([&] { return Recorder::create(file); }).map([&](Recorder recorder) {
+    recorder_.emplace(std::move(recorder));
+    recordingFile_ = file;
+  });
+}
+
+Result<void> SessionControl::stopRecording() {
+  if (!recorder_) {
+    return failure("nothing is recorded", {}, "begin with openspace.sessionRecording.startRecording()");
+  }
+  auto finished = recorder_->finish();
+  recorder_.reset();
+  return finished;
+}
+
+Result<Player> SessionControl::playerOf(const SessionRecording& recording) {
+  return Player::create(recording, camera_,
+                        [this](const std::string& text) { return scripts_.run(text, "recording"); });
+}
+
+Result<void> SessionControl::startPlayback(const std::filesystem::path& file, bool loops, bool keepsTime) {
+  if (auto idle = requireIdle(); !idle) {
+    return idle;
+  }
+  auto recording = readSessionRecording(file);
+  if (!recording) {
+    return tl::make_unexpected(recording.error());
+  }
+  auto player = playerOf(*recording);
+  if (!player) {
+    Error error = player.error();
+    if (error.where.empty()) {
+      error.where = file.string();
+    }
+    return tl::make_unexpected(std::move(error));
+  }
+  player_.emplace(std::move(*player));
+  loop_ = loops ? std::optional(std::move(*recording)) : std::nullopt;
+  hasPlayed_ = false;
+  paused_ = false;
+  if (!keepsTime) {
+    clock_.setTime(player_->startTime());
+  }
+  return {};
+}
+
+void SessionControl::stopPlayback() {
+  setPlaybackPause(false);
+  loop_.reset();
+  if (isInPlay_) {
+    wantsStop_ = true;
+  } else {
+    player_.reset();
+  }
+}
+
+void SessionControl::setPlaybackPause(bool paused) {
+  if (!isPlaying() || paused == paused_) {
+    return;
+  }
+  paused_ = paused;
+  if (paused) {
+    clockWasPaused_ = clock_.isPaused();
+  }
+  clock_.setPause(paused || clockWasPaused_);
+}
+
+void SessionControl::rewind() {
+  auto again = playerOf(*loop_);
+  if (!again) {
+    log::error("{}", again.error().message());  // its first node has gone
+    player_.reset();
+    loop_.reset();
+    return;
+  }
+  player_.emplace(std::move(*again));
+  clock_.setTime(player_->startTime());
+}
+
+void SessionControl::play(double seconds) {
+  if (!player_) {
+    return;
+  }
+  if (player_->finished()) {  // since the last frame
+    player_.reset();
+    return;
+  }
+  isInPlay_ = true;
+  player_->advance(paused_ ? 0.0 : seconds);
+  isInPlay_ = false;
+  if (std::exchange(wantsStop_, false)) {
+    player_.reset();
+  } else if (player_->finished() && loop_) {
+    rewind();
+  } else {
+    hasPlayed_ = player_->finished();
+  }
+}
+
+Result<void> SessionControl::record(double seconds) {
+  return recorder_ ? recorder_->addFrame(seconds, clock_.time(), camera_) : Result<void>{};
+}
+
+}  // namespace meridian::recording
