@@ -89,8 +89,8 @@ class MeridianTiles final : public TileContestant {
   }
 
  private:
-  /// As many as the streams of a globe with four layers have begun (JobQueue::begunAhead).
-  static constexpr std::size_t wantedAtOnce = 1024;
+  /// All of a round, as the raw one sends all it has to.
+  static constexpr std::size_t wantedAtOnce = 2048;
   struct Slot {
     std::mutex mutex;
     std::unique_ptr<gb::SourceTileStore::Want> want;
@@ -101,7 +101,8 @@ class MeridianTiles final : public TileContestant {
     if (number >= end_) {
       return;
     }
-    // Across all tiles in turn: the store's memory holds a quarter of them, so none is there when its turn comes again.
+    // Through the whole pyramid, round by round: the store's memory holds a sixteenth of it, so none is there when its
+    // turn comes again, and each is fetched.
     const gb::TileAddress tile{0, number % JpegPyramid::columns, number / JpegPyramid::columns % JpegPyramid::rows};
     const std::lock_guard lock(slot.mutex);  // its answer may come before it is in its place
     slot.want =
@@ -128,7 +129,8 @@ class MeridianTiles final : public TileContestant {
   Countdown countdown_;
 };
 
-/// libjpeg's state and the pixels of one thread.
+/// libjpeg's state and the pixels of one thread: the decoders together keep as many tiles as SourceTileStore does by
+/// default, for writing where the last tile was is faster than memory is.
 class PlainJpeg {
  public:
   PlainJpeg() {
@@ -146,17 +148,20 @@ class PlainJpeg {
     jpeg_start_decompress(&info_);
     const bool isTile = info_.output_width == JpegPyramid::tileSize && info_.output_height == JpegPyramid::tileSize;
     while (isTile && info_.output_scanline < info_.output_height) {
-      JSAMPROW row = rgba_.data() + std::size_t{4} * info_.output_width * info_.output_scanline;
+      JSAMPROW row = kept_[next_].data() + std::size_t{4} * info_.output_width * info_.output_scanline;
       jpeg_read_scanlines(&info_, &row, 1);
     }
     jpeg_abort_decompress(&info_);
+    next_ = (next_ + 1) % kept_.size();
     return isTile;
   }
 
  private:
+  static constexpr std::size_t tilesKept = (std::size_t{128} << 20) / tileBytes / 2;
   jpeg_decompress_struct info_{};
   jpeg_error_mgr errors_{};
-  std::vector<std::uint8_t> rgba_ = std::vector<std::uint8_t>(tileBytes);
+  std::vector<std::vector<std::uint8_t>> kept_{tilesKept, std::vector<std::uint8_t>(tileBytes)};
+  std::size_t next_ = 0;
 };
 
 std::size_t append(char* data, std::size_t, std::size_t size, void* body) {

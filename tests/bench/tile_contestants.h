@@ -49,7 +49,8 @@ struct Contest {
 
 /// HttpFetcher, SourceTileStore and decodeTile, without the cache on disk.
 std::unique_ptr<TileContestant> meridianTiles(const Contest& contest, Decoders& decoders);
-/// curl_multi and libjpeg-turbo, and nothing that is not needed: buffers are used again, pixels are not kept.
+/// curl_multi and libjpeg-turbo, and nothing that is not needed: buffers are used again, the oldest pixels are
+/// overwritten.
 std::unique_ptr<TileContestant> curlTiles(const Contest& contest, Decoders& decoders);
 
 struct GdalSettings {

@@ -106,8 +106,8 @@ std::filesystem::path authorities(const NginxServer& server) {
 std::string http(const NginxServer& server, Decoders& decoders, int rounds) {
   const Contest contest{server.http1(), connections, {}};
   Rounds contests;
-  contests.add("meridian", meridianTiles(contest, decoders), 1024);
-  contests.add("curl", curlTiles(contest, decoders), 1024);
+  contests.add("meridian", meridianTiles(contest, decoders), 2048);
+  contests.add("curl", curlTiles(contest, decoders), 2048);
   contests.add("gdal", gdalTiles(contest, {gdalThreads, true}), 256, 5);
   contests.run(rounds);
   return contests.report();
@@ -117,8 +117,8 @@ std::string tls(const NginxServer& server, Decoders& decoders, int rounds, bool 
   const Contest contest{isHttp2 ? server.http2() : server.http1OverTls(), isHttp2 ? multiplexed : connections,
                         authorities(server)};
   Rounds contests;
-  contests.add("meridian", meridianTiles(contest, decoders), 1024);
-  contests.add("curl", curlTiles(contest, decoders), 1024);
+  contests.add("meridian", meridianTiles(contest, decoders), 2048);
+  contests.add("curl", curlTiles(contest, decoders), 2048);
   contests.add("gdal", gdalTiles(contest, {gdalThreads, true}), 16, 3);
   contests.run(rounds);
   return contests.report();

@@ -14,7 +14,7 @@ namespace meridian {
 /// JPEG tiles over the whole globe, 256 x 256 pixels and all alike, at ADDRESS/LEVEL/COLUMN/ROW.jpg.
 struct JpegPyramid {
   static constexpr int tileSize = TimedPyramid::tileSize;
-  static constexpr int finest = 5;  ///< level; coarser ones are asked for, too
+  static constexpr int finest = 6;  ///< level; coarser ones are asked for, too
   static constexpr int columns = 2 << finest;
   static constexpr int rows = 1 << finest;
 
