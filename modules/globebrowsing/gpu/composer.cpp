@@ -336,7 +336,7 @@ std::optional<Composer::Source> Composer::reliefSourceOf(const CompositionPart& 
     source.ramp = static_cast<int>(*row);
     source.stops = static_cast<int>(style.ramp->stops.size());
   }
-  const std::optional<std::uint32_t> slot = relief_.tile(part.key, *part.relief, frame_);
+  const std::optional<std::uint32_t> slot = relief_.tile(*part.relief, frame_);
   if (!slot) {
     return std::nullopt;
   }

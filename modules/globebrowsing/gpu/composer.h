@@ -25,7 +25,7 @@ namespace meridian::globebrowsing {
 struct CompositionPart {
   const Layer* layer = nullptr;
   const ColourTile* tile = nullptr;    ///< null: the layer has nothing there, or needs no tile
-  TileKey key;                         ///< of that tile, or of `relief`
+  TileKey key;                         ///< of that tile
   UnitSquareTransform transform;       ///< the composite's unit square in that tile's
   const ReliefTile* relief = nullptr;  ///< of layers that colour heights
   double pixelMetres = 0.0;            ///< of the composite; for those

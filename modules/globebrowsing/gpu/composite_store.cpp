@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "globebrowsing/providers/raw_tile_job.h"
 #include "globebrowsing/source/tile_layout.h"
 
 namespace meridian::globebrowsing {
@@ -22,10 +21,6 @@ glm::vec4 textureTransform(const UnitSquareTransform& transform) {
       (double{colourLayout.border} + double{colourLayout.interior} * transform.offset) / double{colourLayout.size()};
   const glm::dvec2 scale = double{colourLayout.interior} * transform.scale / double{colourLayout.size()};
   return glm::vec4(glm::vec2(offset), glm::vec2(scale));
-}
-
-bool isTile(const Layer& layer) {
-  return layer.sampling() == Sampling::Tile;
 }
 
 TileDataPointer makeRelief(const Tiling& tiling, const TileIndex& index, std::vector<float> heights) {
@@ -62,6 +57,7 @@ void CompositeStore::beginFrame(std::uint64_t frame) {
   if (changed) {
     facts_.clear();
   }
+  keepStandIns();
   updateFading();
   for (const CompositeKind kind : allCompositeKinds) {
     if (of(kind).hasSteps || of(kind).hasNext) {
@@ -149,7 +145,7 @@ bool CompositeStore::isFiner(const Layer& layer, const LayerStepPointer& step, c
     const int coarser = layer.sampling() == Sampling::Isolines ? levelsOfLines : 0;
     return index.level < coarser || relief_.hasFiner(ancestor(index, index.level - coarser));
   }
-  return isTile(layer) && step != nullptr && step->tiles()->hasFinerColours(*tiling_, index);
+  return layer.sampling() == Sampling::Tile && step != nullptr && step->tiles()->hasFinerColours(*tiling_, index);
 }
 
 const CompositeStore::Facts& CompositeStore::facts(const TileIndex& index) const {
@@ -198,6 +194,9 @@ CompositeStore::State CompositeStore::stateOf(const CompositeKey& key) const {
   const Generation& generation = generationOf(key);
   if (contents.stamp < generation.since || contents.stamp != generation.stamp) {
     return {contents.stamp >= generation.since, false};
+  }
+  if (contents.lack > 0) {
+    return {true, false};
   }
   if (difference(contents.layers, of(key.kind).fade.opacities()).kind == OpacityDifference::Kind::None) {
     return {true, true};
@@ -266,72 +265,6 @@ CompositeStore::State CompositeStore::wantComposite(const CompositeKey& key, dou
   return state;
 }
 
-void CompositeStore::request(Request request, const LayerOpacity& other) {
-  const KindState& state = of(request.key.kind);
-  // Many chunks may draw the same ancestor's composite.
-  if (std::any_of(requests_.begin(), requests_.end(), [&](const Request& r) { return r.key == request.key; })) {
-    return;
-  }
-  const bool isNext = &generationOf(request.key) == &state.next;
-  request.isMissing = request.isMissing && (!isNext || state.pair.isMixed);
-  missing_ += request.isMissing ? 1 : 0;
-  if (composer_->ready(request.key.kind) && !state.opening.waits()) {
-    request.firstPart = parts_.size();
-    if (gather(request.key, request.priority, other)) {
-      request.partCount = parts_.size() - request.firstPart;
-      requests_.push_back(request);
-    } else {
-      parts_.resize(request.firstPart);
-    }
-  }
-}
-
-bool CompositeStore::gather(const CompositeKey& key, double priority, const LayerOpacity& other) {
-  bool all = true;
-  const KindState& state = of(key.kind);
-  const Generation& generation = generationOf(key);
-  for (std::size_t i = 0; i < state.layers.size(); ++i) {
-    const LayerOpacity& now = state.fade.opacities()[i];
-    CompositionPart part;
-    part.layer = state.layers[i];
-    part.opacity = now.version == other.version ? other.opacity : now.opacity;
-    all = gatherPart(part, generation.steps[i], key, priority) && all;
-    parts_.push_back(part);
-  }
-  return all;
-}
-
-bool CompositeStore::gatherPart(CompositionPart& part, const LayerStepPointer& step, const CompositeKey& key,
-                                double priority) {
-  const bool colourHeights = isRelief(part.layer->sampling());
-  if (!colourHeights && (!isTile(*part.layer) || step == nullptr)) {
-    return true;
-  }
-  const auto hasFinerData = [&](const TileIndex& tile) {
-    return colourHeights ? relief_.hasFiner(tile) : step->tiles()->hasFinerColours(*tiling_, tile);
-  };
-  TileIndex index = key.index;
-  while (index.level > 0 && !hasFinerData(*tiling_->parent(index))) {
-    part.transform = part.transform.then(tiling_->inParent(index));
-    index = *tiling_->parent(index);
-  }
-  TileAnswer answer;
-  if (colourHeights) {
-    part.key = {relief_.stream(), index};
-    part.pixelMetres = pixelMetres(*tiling_, key.index);
-    answer = relief_.request(index, priority);
-  } else if (const std::shared_ptr<TileProvider>& tiles = step->tiles(); tiles->overlaps(*tiling_, index)) {
-    part.key = {step->stream(), index};
-    answer = streamer_.request(part.key, priority, [&] { return std::make_unique<ColourJob>(tiles, tiling_, index); });
-  }
-  if (answer.state == TileAnswer::State::Ready) {
-    held_.push_back(*answer.data);
-    part.tile = colourHeights ? nullptr : &static_cast<const ColourTile&>(*held_.back());
-    part.relief = colourHeights ? &static_cast<const ReliefTile&>(*held_.back()) : nullptr;
-  }
-  return answer.state != TileAnswer::State::Pending;
-}
-
 void CompositeStore::keep(const TileIndex& index, int colourLevel) {
   for (const CompositeKind kind : allCompositeKinds) {
     if (inUse(kind)) {
@@ -372,7 +305,7 @@ void CompositeStore::compose(double milliseconds) {
       noteFull(request);
       continue;  // those after it may have a slot already
     }
-    missing_ -= request.isMissing ? 1 : 0;
+    missing_ -= request.isMissing && request.lack == 0 ? 1 : 0;
     spent += composer_->estimatedMilliseconds({parts_.data() + request.firstPart, request.partCount});
   }
   for (const CompositeKind kind : allCompositeKinds) {
@@ -418,6 +351,7 @@ CompositeStore::Composed CompositeStore::composeOne(const Request& request) {
   ++composedCount_;
   Contents& contents = slotContents_[*slot];
   contents.stamp = generationOf(request.key).stamp;
+  contents.lack = request.lack;
   contents.layers.clear();
   for (const CompositionPart& part : parts) {
     contents.layers.push_back({part.layer->version(), part.opacity});

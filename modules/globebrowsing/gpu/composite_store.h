@@ -16,6 +16,7 @@
 #include "globebrowsing/gpu/height_composition.h"
 #include "globebrowsing/gpu/opening_wait.h"
 #include "globebrowsing/gpu/slot_pool.h"
+#include "globebrowsing/gpu/stand_in.h"
 #include "globebrowsing/layers/layer_manager.h"
 #include "globebrowsing/streaming/tile_streamer.h"
 
@@ -44,7 +45,9 @@ namespace meridian::globebrowsing {
 
 /// The colours of tiles: decides which tile's composite a chunk draws (its own, or beyond the finest data that of an
 /// ancestor), asks for the raw tiles that it needs, and has it composed. When layers or settings change the composites
-/// of before are drawn until they have been composed anew, nearest first, under the frame's budget.
+/// of before are drawn until they have been composed anew, nearest first, under the frame's budget. A layer whose tile
+/// is late does not hold up the others: an ancestor's tile stands in for it, or the layers below show, and when it
+/// comes the composite is composed anew.
 ///
 /// When a layer moves on to another step in time, composites of the new step are made beside the old; as soon as they
 /// cover all that the last frame drew, they are exchanged at once. If the pool has no room for both, the new ones
@@ -137,6 +140,7 @@ class CompositeStore {
     std::uint64_t stamp = 0;
     LayerOpacities layers;
     std::uint64_t drawn = 0;  ///< the last frame that drew it
+    unsigned lack = 0;        ///< Lack::coarser
   };
   /// What to draw a composite mixed with.
   struct Mixture {
@@ -182,6 +186,7 @@ class CompositeStore {
     std::size_t firstPart = 0;
     std::size_t partCount = 0;
     bool isMissing = true;  ///< what is drawn without it is not what it should be
+    unsigned lack = 0;      ///< Lack::coarser
   };
 
   [[nodiscard]] KindState& of(CompositeKind kind) { return kinds_[static_cast<std::size_t>(kind)]; }
@@ -191,6 +196,7 @@ class CompositeStore {
   /// Whether facts are out of date.
   bool updateKind(CompositeKind kind);
   void takeLayers(CompositeKind kind);
+  void keepStandIns();
   void takeSteps(KindState& state);
   /// The same of one generation.
   void takeSteps(KindState& state, Generation& generation);
@@ -233,9 +239,14 @@ class CompositeStore {
   /// with instead of the layer's own.
   void request(Request request, const LayerOpacity& other = {});
   [[nodiscard]] State stateOf(const CompositeKey& key) const;
-  bool gather(const CompositeKey& key, double priority, const LayerOpacity& other);
-  /// What that layer adds to the composite; whether it is there (or never will be), else asks for it.
-  bool gatherPart(CompositionPart& part, const LayerStepPointer& step, const CompositeKey& key, double priority);
+  Lack gather(const CompositeKey& key, double priority, const LayerOpacity& other);
+  /// What that layer adds to the composite; asks for it unless it is there, or never will be.
+  Lack gatherPart(CompositionPart& part, const LayerStepPointer& step, const CompositeKey& key, double priority);
+  /// Whether a composite of the parts from that one on, something of which is late, is better than what there is.
+  [[nodiscard]] bool isGain(const Request& request) const;
+  /// Whether a composite may be without the layer's tile, if that is late. What shows a layer at another time is better
+  /// than what does not show it.
+  [[nodiscard]] bool mayLack(const Layer& layer, const CompositeKey& key) const;
   /// What the composite of that key is drawn mixed with, if anything.
   [[nodiscard]] std::optional<Mixture> mixture(const CompositeKey& key) const;
   /// The opacity with which a second composite would bring the one of that key up to date, if any would.

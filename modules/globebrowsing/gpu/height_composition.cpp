@@ -1,6 +1,7 @@
 #include "globebrowsing/gpu/height_composition.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "globebrowsing/layers/compose_heights.h"
@@ -12,6 +13,7 @@ namespace {
 
 /// What is known of tiles long gone is dropped when it is of that many.
 constexpr std::size_t mostFiner = 1 << 15;
+constexpr std::size_t mostLacks = 1 << 12;
 
 /// Raw heights of all layers -> one tile.
 class HeightCompositionJob final : public TileJob {
@@ -20,6 +22,7 @@ class HeightCompositionJob final : public TileJob {
     TileDataPointer tile;
     LayerSettings settings;
     double opacity = 1.0;
+    UnitSquareTransform within;
   };
   struct Target {
     std::shared_ptr<const Tiling> tiling;
@@ -34,7 +37,8 @@ class HeightCompositionJob final : public TileJob {
     std::vector<HeightPart> heights;
     heights.reserve(parts_.size());
     for (const Part& part : parts_) {
-      heights.push_back({&static_cast<const HeightTile&>(*part.tile).pixels(), part.settings, part.opacity});
+      heights.push_back(
+          {&static_cast<const HeightTile&>(*part.tile).pixels(), part.settings, part.opacity, part.within});
     }
     return target_.make(*target_.tiling, target_.index, composeHeights(heights, target_.layout).metres);
   }
@@ -64,29 +68,62 @@ void HeightComposition::beginFrame() {
     stream_ = streamer_.newStream();
     gathered_.resize(heights.enabledLayers().size());
     finer_.clear();
+    lacks_.clear();
   }
   if (finer_.size() > mostFiner) {
     finer_.clear();
   }
+  if (lacks_.size() > mostLacks) {
+    // Which tiles are to be made anew is forgotten with it: so all are others.
+    lacks_.clear();
+    streamer_.forget(stream_);
+    stream_ = streamer_.newStream();
+  }
   opening_.update(heights.enabledLayers());
+  for (const Layer* layer : heights.enabledLayers()) {
+    if (layer->isReady()) {
+      keepRoots(streamer_, *tiling_, streamOf(*layer->step()));
+    }
+  }
 }
 
-bool HeightComposition::gather(const TileIndex& index, double priority) {
+std::uint32_t HeightComposition::streamOf(const LayerStep& step) const {
+  return layout_ == reliefLayout ? step.reliefStream() : step.stream();
+}
+
+Lack HeightComposition::gather(const TileIndex& index, double priority) {
   const std::vector<Layer*>& enabled = layers_.group(LayerGroupId::HeightLayers).enabledLayers();
-  bool all = true;
+  Lack lack;
   for (std::size_t i = 0; i < enabled.size(); ++i) {
     const Layer& layer = *enabled[i];
     gathered_[i] = {};
     if (layer.isReady() && layer.step()->tiles()->overlaps(*tiling_, index)) {
-      const LayerStep& step = *layer.step();
-      const std::uint32_t stream = layout_ == reliefLayout ? step.reliefStream() : step.stream();
-      gathered_[i] = streamer_.request({stream, index}, priority, [&] {
-        return std::make_unique<HeightJob>(step.tiles(), tiling_, index, layout_);
-      });
-      all = all && gathered_[i].state != TileAnswer::State::Pending;
+      lack += gatherLayer(gathered_[i], *layer.step(), index, priority);
     }
   }
-  return all;
+  return lack;
+}
+
+Lack HeightComposition::gatherLayer(Gathered& gathered, const LayerStep& step, const TileIndex& index,
+                                    double priority) {
+  const TileKey key{streamOf(step), index};
+  const TileAnswer own = streamer_.request(
+      key, priority, [&] { return std::make_unique<HeightJob>(step.tiles(), tiling_, index, layout_); });
+  if (own.state != TileAnswer::State::Pending) {
+    gathered.tile = own.data;
+    return {};
+  }
+  if (!own.isLate) {
+    return {Lack::everything, true};
+  }
+  const StandIn standIn = findStandIn(streamer_, *tiling_, key);
+  gathered = {standIn.tile, standIn.within};
+  return {standIn.coarser};
+}
+
+unsigned HeightComposition::lack(const TileIndex& index) const {
+  const auto found = lacks_.find(index);
+  return found == lacks_.end() ? 0 : found->second;
 }
 
 TileAnswer HeightComposition::request(const TileIndex& index, double priority) {
@@ -94,15 +131,28 @@ TileAnswer HeightComposition::request(const TileIndex& index, double priority) {
     return {TileAnswer::State::Pending};
   }
   const TileKey key{stream_, index};
-  if (streamer_.peek(key).state == TileAnswer::State::Absent && !gather(index, priority)) {
-    return {TileAnswer::State::Pending};
+  const bool isMade = streamer_.peek(key).state != TileAnswer::State::Absent;
+  const unsigned lackOfMade = isMade ? lack(index) : std::numeric_limits<unsigned>::max();
+  if (lackOfMade > 0) {
+    const Lack now = gather(index, priority);
+    if (!isMade && now.comesSoon) {
+      return {TileAnswer::State::Pending};
+    }
+    if (now.coarser < lackOfMade && !now.comesSoon) {
+      streamer_.drop(key);
+      lacks_.erase(index);
+      if (now.coarser > 0) {
+        lacks_.emplace(index, now.coarser);
+      }
+    }
   }
   return streamer_.request(key, priority, [&] {
     const std::vector<Layer*>& enabled = layers_.group(LayerGroupId::HeightLayers).enabledLayers();
     std::vector<HeightCompositionJob::Part> parts;
     for (std::size_t i = 0; i < enabled.size(); ++i) {
-      if (gathered_[i].state == TileAnswer::State::Ready) {
-        parts.push_back({*gathered_[i].data, enabled[i]->settings(), enabled[i]->effectiveOpacity()});
+      if (gathered_[i].tile != nullptr) {
+        parts.push_back(
+            {*gathered_[i].tile, enabled[i]->settings(), enabled[i]->effectiveOpacity(), gathered_[i].within});
       }
     }
     return std::make_unique<HeightCompositionJob>(HeightCompositionJob::Target{tiling_, index, layout_, make_},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "globebrowsing/gpu/opening_wait.h"
+#include "globebrowsing/gpu/stand_in.h"
 #include "globebrowsing/layers/layer_manager.h"
 #include "globebrowsing/source/tile_layout.h"
 #include "globebrowsing/streaming/tile_streamer.h"
@@ -14,6 +15,8 @@ namespace meridian::globebrowsing {
 
 /// Tiles made of the heights of all height layers, in one layout: asks for the raw heights of every enabled layer, and
 /// has a worker compose them and make the tile. When heights change (a layer toggled, a setting), all tiles are others.
+/// What is late is left out, or an ancestor's heights stand in for it; who goes on asking has the tile made anew when
+/// more has come.
 /// Render thread only; a steady frame allocates nothing.
 class HeightComposition {
  public:
@@ -32,12 +35,22 @@ class HeightComposition {
   [[nodiscard]] std::uint32_t stream() const { return stream_; }
   /// The tile, or asks for what it lacks. Pending also while height layers are being opened.
   [[nodiscard]] TileAnswer request(const TileIndex& index, double priority);
+  /// By how much the tile of request() is not what it should be; 0 when nothing was late.
+  [[nodiscard]] unsigned lack(const TileIndex& index) const;
   /// Whether some enabled height layer has finer data within the tile than the tile shows. No input or output.
   [[nodiscard]] bool hasFiner(const TileIndex& index) const;
 
  private:
-  /// Whether the raw heights of all layers are there (or will never be); asks for those that are missing.
-  bool gather(const TileIndex& index, double priority);
+  /// One layer's heights, of the tile or an ancestor; null without any.
+  struct Gathered {
+    const TileDataPointer* tile = nullptr;
+    UnitSquareTransform within;
+  };
+
+  [[nodiscard]] std::uint32_t streamOf(const LayerStep& step) const;
+  /// Looks for the raw heights of all layers, asks for those that are missing, and tells what they are.
+  Lack gather(const TileIndex& index, double priority);
+  Lack gatherLayer(Gathered& gathered, const LayerStep& step, const TileIndex& index, double priority);
 
   std::shared_ptr<const Tiling> tiling_;
   LayerManager& layers_;
@@ -45,7 +58,8 @@ class HeightComposition {
   TileLayout layout_;
   Make make_;
   mutable std::unordered_map<TileIndex, bool> finer_;  ///< what hasFiner found; asked for every frame
-  std::vector<TileAnswer> gathered_;                   ///< by enabled height layer, of the tile being looked at
+  std::unordered_map<TileIndex, unsigned> lacks_;      ///< of tiles that were made while something was late
+  std::vector<Gathered> gathered_;                     ///< by enabled height layer, of the tile being looked at
   OpeningWait opening_;
   std::uint64_t version_ = 0;  ///< of the height layers
   std::uint32_t stream_ = 0;

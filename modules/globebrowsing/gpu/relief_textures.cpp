@@ -44,13 +44,13 @@ std::size_t ReliefTextures::bytesPerTile() {
   return std::size_t{ReliefTile::size} * ReliefTile::size * (sizeof(float) + sizeof(ReliefTile::Normal));
 }
 
-std::optional<std::uint32_t> ReliefTextures::tile(const TileKey& key, const ReliefTile& tile, std::uint64_t frame) {
+std::optional<std::uint32_t> ReliefTextures::tile(const ReliefTile& tile, std::uint64_t frame) {
   constexpr int size = ReliefTile::size;
-  std::optional<std::uint32_t> slot = tiles_.use(key, frame);
+  std::optional<std::uint32_t> slot = tiles_.use(tile.id(), frame);
   if (slot) {
     return slot;
   }
-  slot = tiles_.take(key, frame, [](const TileKey&) {});
+  slot = tiles_.take(tile.id(), frame, [](std::uint64_t) {});
   if (!slot) {
     return std::nullopt;
   }

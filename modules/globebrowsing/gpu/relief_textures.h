@@ -8,7 +8,6 @@
 #include "globebrowsing/gpu/slot_pool.h"
 #include "globebrowsing/layers/relief_tile.h"
 #include "globebrowsing/providers/colour_ramp.h"
-#include "globebrowsing/streaming/tile_key.h"
 #include "host/graphics/gl_objects.h"
 
 namespace meridian::globebrowsing {
@@ -21,7 +20,7 @@ class ReliefTextures {
   [[nodiscard]] static std::size_t bytesPerTile();
 
   /// The tile's array layer in both textures, uploaded if need be. Nothing when those of this frame fill them.
-  [[nodiscard]] std::optional<std::uint32_t> tile(const TileKey& key, const ReliefTile& tile, std::uint64_t frame);
+  [[nodiscard]] std::optional<std::uint32_t> tile(const ReliefTile& tile, std::uint64_t frame);
   /// The ramp's row; likewise.
   [[nodiscard]] std::optional<std::uint32_t> ramp(const std::shared_ptr<const ColourRamp>& ramp, std::uint64_t frame);
 
@@ -42,7 +41,7 @@ class ReliefTextures {
   Set textures_;
   graphics::Sampler sampler_;
   bool hasTiles_ = false;
-  SlotPool<TileKey> tiles_;
+  SlotPool<std::uint64_t> tiles_;  ///< by ReliefTile::id()
   SlotPool<const ColourRamp*> rampRows_;
   std::vector<std::shared_ptr<const ColourRamp>> ramps_;  ///< by row: no other can have its address meanwhile
 };

@@ -33,12 +33,14 @@ void SurfaceStore::beginFrame(std::uint64_t frame) {
 bool SurfaceStore::want(const TileIndex& index, double priority) {
   pool_.slots().use(index, frame_);
   const auto resident = resident_.find(index);
-  if (resident != resident_.end() && resident->second.stream == heights_.stream()) {
+  const bool isCurrent = resident != resident_.end() && resident->second.stream == heights_.stream();
+  if (isCurrent && resident->second.lack == 0) {
     return true;
   }
   const TileAnswer answer = heights_.request(index, priority);
-  if (answer.state == TileAnswer::State::Ready) {
-    arrivals_.push_back({index, priority, *answer.data});
+  const unsigned lack = heights_.lack(index);
+  if (answer.state == TileAnswer::State::Ready && (!isCurrent || lack < resident->second.lack)) {
+    arrivals_.push_back({index, priority, *answer.data, lack});
   }
   return false;
 }
@@ -73,7 +75,7 @@ bool SurfaceStore::place(const Arrival& arrival) {
   pool_.upload(*slot, *surface);
   lowest_ = std::min(lowest_, surface->heightRange().minimum);
   highest_ = std::max(highest_, surface->heightRange().maximum);
-  resident_[arrival.index] = {std::move(surface), heights_.stream(), ++lastStamp_};
+  resident_[arrival.index] = {std::move(surface), heights_.stream(), ++lastStamp_, arrival.lack};
   deepest_ = std::max(deepest_, int{arrival.index.level});
   return true;
 }

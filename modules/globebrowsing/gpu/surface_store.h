@@ -17,7 +17,8 @@ namespace meridian::globebrowsing {
 
 /// The shapes of tiles: asks for the raw heights of every enabled height layer, has them composed into ChunkSurfaces on
 /// workers, and uploads those. When heights change (a layer toggled, a setting) the surfaces of before stay until the
-/// new ones are there. Render thread only; a steady frame allocates nothing.
+/// new ones are there. What is made without a layer that is late is made anew when more has come. Render thread only; a
+/// steady frame allocates nothing.
 class SurfaceStore {
  public:
   /// All must outlive the store.
@@ -64,11 +65,13 @@ class SurfaceStore {
     std::shared_ptr<const ChunkSurface> surface;
     std::uint32_t stream = 0;
     unsigned stamp = 0;
+    unsigned lack = 0;  ///< HeightComposition::lack, as it was made
   };
   struct Arrival {
     TileIndex index;
     double priority = 0.0;
     TileDataPointer data;
+    unsigned lack = 0;
   };
 
   /// False when the pool is full.

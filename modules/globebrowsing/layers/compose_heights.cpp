@@ -9,10 +9,41 @@ namespace meridian::globebrowsing {
 
 namespace {
 
-void layOver(std::vector<double>& heights, const HeightPart& part) {
+/// An ancestor's heights at the tile's samples.
+std::vector<float> enlarge(const std::vector<float>& metres, const UnitSquareTransform& within,
+                           const TileLayout& layout) {
+  const int size = layout.size();
+  const glm::dvec2 origin = layout.uv(0, 0);
+  const auto place = [&](double unit, double first) {
+    return std::clamp((unit - first) / layout.spacing(), 0.0, size - 1.0);
+  };
+  std::vector<float> enlarged;
+  enlarged.reserve(metres.size());
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) {
+      const glm::dvec2 uv = within.apply(layout.uv(column, row));
+      const double x = place(uv.x, origin.x);
+      const double y = place(uv.y, origin.y);
+      const int left = std::min(static_cast<int>(x), size - 2);
+      const int top = std::min(static_cast<int>(y), size - 2);
+      const auto at = [&](int dx, int dy) {
+        return static_cast<double>(metres[static_cast<std::size_t>((top + dy) * size + left + dx)]);
+      };
+      const double upper = std::lerp(at(0, 0), at(1, 0), x - left);
+      const double lower = std::lerp(at(0, 1), at(1, 1), x - left);
+      enlarged.push_back(static_cast<float>(std::lerp(upper, lower, y - top)));
+    }
+  }
+  return enlarged;
+}
+
+void layOver(std::vector<double>& heights, const HeightPart& part, const TileLayout& layout) {
   assert(part.pixels->metres.size() == heights.size());
+  const bool isOwn = part.within == UnitSquareTransform{};
+  const std::vector<float> enlarged = isOwn ? std::vector<float>() : enlarge(part.pixels->metres, part.within, layout);
+  const std::vector<float>& all = isOwn ? part.pixels->metres : enlarged;
   for (std::size_t i = 0; i < heights.size(); ++i) {
-    const double metres = static_cast<double>(part.pixels->metres[i]);
+    const double metres = static_cast<double>(all[i]);
     const double layer = applySettings(metres, part.settings);
     if (std::isfinite(metres) && std::isfinite(layer)) {  // a gamma of 0 makes a number of anything
       heights[i] += (layer - heights[i]) * part.opacity;
@@ -27,7 +58,7 @@ ComposedHeights composeHeights(std::span<const HeightPart> parts, const TileLayo
   std::vector<double> heights(size * size, 0.0);
   for (const HeightPart& part : parts) {
     if (part.pixels != nullptr && !part.pixels->metres.empty()) {
-      layOver(heights, part);
+      layOver(heights, part, layout);
     }
   }
   ComposedHeights composed;

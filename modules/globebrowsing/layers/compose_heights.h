@@ -5,6 +5,7 @@
 
 #include "globebrowsing/layers/blend.h"
 #include "globebrowsing/source/resample.h"
+#include "globebrowsing/tiling/tiling.h"
 
 namespace meridian::globebrowsing {
 
@@ -13,6 +14,8 @@ struct HeightPart {
   const HeightPixels* pixels = nullptr;  ///< null or empty: the layer has nothing there
   LayerSettings settings{};
   double opacity = 1.0;
+  /// Of the tile in that of the pixels: of an ancestor, while the tile's own are not there.
+  UnitSquareTransform within{};
 };
 
 /// The heights that are drawn, culled, picked and answered by heightAt: one tile of them.
@@ -23,8 +26,8 @@ struct ComposedHeights {
 };
 
 /// Lays the parts over each other, lowest first: height = mix(below, settings(metres), opacity), where below starts at
-/// 0 (the ellipsoid); a part that is not a number there shows what is below. In double. Deterministic per sample, so
-/// shared nodes that came in equal go out equal.
+/// 0 (the ellipsoid); a part that is not a number there shows what is below. In double; an ancestor's bilinearly.
+/// Deterministic per sample, so shared nodes that came in equal go out equal.
 [[nodiscard]] ComposedHeights composeHeights(std::span<const HeightPart> parts, const TileLayout& layout);
 
 }  // namespace meridian::globebrowsing

@@ -1,5 +1,6 @@
 #include "globebrowsing/layers/relief_tile.h"
 
+#include <atomic>
 #include <cassert>
 #include <cmath>
 
@@ -9,6 +10,8 @@
 namespace meridian::globebrowsing {
 
 namespace {
+
+std::atomic<std::uint64_t> lastId = 0;
 
 /// Metres eastward and northward from one sample to the next.
 struct Steps {
@@ -46,7 +49,8 @@ ReliefTile::Normal normalOf(const glm::dvec2& differences, const Steps& steps) {
 
 }  // namespace
 
-ReliefTile::ReliefTile(const Tiling& tiling, const TileIndex& index, const std::vector<float>& heights) {
+ReliefTile::ReliefTile(const Tiling& tiling, const TileIndex& index, const std::vector<float>& heights)
+    : id_(++lastId) {
   constexpr int side = reliefLayout.size();
   assert(heights.size() == static_cast<std::size_t>(side) * side);
   heights_.reserve(static_cast<std::size_t>(size) * size);

@@ -28,8 +28,11 @@ class ReliefTile final : public TileData {
   [[nodiscard]] std::span<const float> heights() const { return heights_; }
   [[nodiscard]] std::span<const Normal> normals() const { return normals_; }
   [[nodiscard]] std::size_t bytes() const override;
+  /// No other relief tile of this process ever has it, not even one of the same place.
+  [[nodiscard]] std::uint64_t id() const { return id_; }
 
  private:
+  std::uint64_t id_;
   std::vector<float> heights_;
   std::vector<Normal> normals_;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -33,9 +32,11 @@ TileStreamer::~TileStreamer() {
   queue_->close();
 }
 
-TileAnswer TileStreamer::answer(const Entry& entry) {
+TileAnswer TileStreamer::answer(const Entry& entry) const {
   if (entry.job != nullptr) {
-    return {TileAnswer::State::Pending};
+    TileAnswer pending{TileAnswer::State::Pending};
+    pending.isLate = now_ - streams_.at(entry.key.stream).heard > patience || now_ - entry.asked > 3 * patience;
+    return pending;
   }
   if (entry.error != nullptr) {
     return {TileAnswer::State::Failed, nullptr, entry.error.get()};
@@ -67,6 +68,11 @@ TileAnswer TileStreamer::enqueue(const TileKey& key, double priority, std::uniqu
   entry.job = std::make_shared<QueuedJob>(key, std::move(job), usable(priority));
   entry.pendingPlace = pending_.size();
   pending_.push_back(entries_.begin());
+  entry.asked = now_;
+  Stream& stream = streams_[key.stream];
+  if (stream.pending++ == 0) {
+    stream.heard = now_;
+  }
   ++statistics_->tiles.requested;
   queue_->add(entry.job);
   return answer(entry);
@@ -83,6 +89,17 @@ void TileStreamer::touch(const TileKey& key) {
   }
 }
 
+void TileStreamer::drop(const TileKey& key) {
+  const auto place = places_.find(key);
+  if (place == places_.end()) {
+    return;
+  }
+  if (place->second->job != nullptr) {
+    cancel(*place->second);
+  }
+  erase(place->second);
+}
+
 void TileStreamer::forget(std::uint32_t stream) {
   for (auto entry = entries_.begin(); entry != entries_.end();) {
     if (entry->key.stream != stream) {
@@ -94,18 +111,17 @@ void TileStreamer::forget(std::uint32_t stream) {
     }
     entry = erase(entry);
   }
-  lastErrors_.erase(stream);
+  streams_.erase(stream);
 }
 
 std::size_t TileStreamer::beginFrame() {
-  using Clock = std::chrono::steady_clock;
   ++frame_;
   queue_->takeFinished(finished_);
-  const Clock::time_point start = Clock::now();
+  now_ = Clock::now();
   std::size_t taken = 0;
   while (taken < finished_.size()) {
     take(*finished_[taken++]);
-    if (std::chrono::duration<double, std::milli>(Clock::now() - start).count() >= options_.takeMilliseconds) {
+    if (std::chrono::duration<double, std::milli>(Clock::now() - now_).count() >= options_.takeMilliseconds) {
       break;
     }
   }
@@ -135,19 +151,22 @@ void TileStreamer::take(QueuedJob& finished) {
     ++statistics_->tiles.failed;
   }
   bytes_ += entry.bytes;
+  streams_[entry.key.stream].heard = now_;
   leavePending(entry);
 }
 
 void TileStreamer::keepError(std::uint32_t stream, std::shared_ptr<const Error> error) {
-  const auto [last, isFirst] = lastErrors_.insert_or_assign(stream, std::move(error));
-  if (isFirst) {
+  std::shared_ptr<const Error>& last = streams_[stream].lastError;
+  if (last == nullptr) {
     // A damaged file fails in many tiles: one message is enough.
-    log::error("{}; more of this layer's tiles may be missing", last->second->message());
+    log::error("{}; more of this layer's tiles may be missing", error->message());
   }
+  last = std::move(error);
 }
 
 void TileStreamer::leavePending(Entry& entry) {
   entry.job.reset();
+  --streams_[entry.key.stream].pending;
   const Entries::iterator last = pending_.back();
   last->pendingPlace = entry.pendingPlace;
   pending_[entry.pendingPlace] = last;
@@ -194,13 +213,13 @@ void TileStreamer::evict() {
 }
 
 std::size_t TileStreamer::pending(std::uint32_t stream) const {
-  return static_cast<std::size_t>(std::count_if(pending_.begin(), pending_.end(),
-                                                [stream](const auto& entry) { return entry->key.stream == stream; }));
+  const auto found = streams_.find(stream);
+  return found == streams_.end() ? 0 : found->second.pending;
 }
 
 const Error* TileStreamer::lastError(std::uint32_t stream) const {
-  const auto found = lastErrors_.find(stream);
-  return found == lastErrors_.end() ? nullptr : found->second.get();
+  const auto found = streams_.find(stream);
+  return found == streams_.end() ? nullptr : found->second.lastError.get();
 }
 
 }  // namespace meridian::globebrowsing

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <list>
@@ -32,6 +33,9 @@ struct TileAnswer {
   State state = State::Absent;
   const TileDataPointer* data = nullptr;
   const Error* error = nullptr;
+  /// Pending, and better not waited for: nothing has come of its stream for TileStreamer::patience, or it was itself
+  /// asked for three times as long ago. Go on without it, and ask again.
+  bool isLate = false;
 };
 
 /// Sizes and limits of a TileStreamer.
@@ -53,6 +57,9 @@ struct TileStreamerOptions {
 /// Render thread only, but for what jobs do. A frame that asks for nothing new allocates nothing.
 class TileStreamer {
  public:
+  /// Local data come within milliseconds, those of a server that works at least now and then.
+  static constexpr std::chrono::milliseconds patience{1000};
+
   /// Both outlive the streamer. Counts into statistics.tiles (a cache hit is a tile that was not in use any more and is
   /// asked for again) and statistics.memory.tileCache.
   TileStreamer(WorkerPool& workers, Statistics& statistics, const TileStreamerOptions& options = {});
@@ -77,6 +84,8 @@ class TileStreamer {
   [[nodiscard]] TileAnswer peek(const TileKey& key) const;
   /// Marks the tile as used this frame (and, if it is pending, as still wanted), without asking for it.
   void touch(const TileKey& key);
+  /// Drops one tile: its next request makes it anew.
+  void drop(const TileKey& key);
   /// Drops all of a stream, its failures and its last error too, and cancels its jobs.
   void forget(std::uint32_t stream);
 
@@ -97,6 +106,7 @@ class TileStreamer {
   [[nodiscard]] const Error* lastError(std::uint32_t stream) const;
 
  private:
+  using Clock = std::chrono::steady_clock;
   /// One tile: pending while `job` is set, failed while `error` is set, else ready.
   struct Entry {
     TileKey key;
@@ -106,12 +116,18 @@ class TileStreamer {
     std::shared_ptr<const Error> error;
     std::shared_ptr<QueuedJob> job;
     std::size_t pendingPlace = 0;  ///< in pending_, while `job` is set
+    Clock::time_point asked;
+  };
+  struct Stream {
+    std::size_t pending = 0;
+    Clock::time_point heard;  ///< of it last, or when the first of those that are pending was asked for
+    std::shared_ptr<const Error> lastError;
   };
   using Entries = std::list<Entry>;
 
   TileAnswer use(Entries::iterator entry, double priority);
   TileAnswer enqueue(const TileKey& key, double priority, std::unique_ptr<TileJob> job);
-  [[nodiscard]] static TileAnswer answer(const Entry& entry);
+  [[nodiscard]] TileAnswer answer(const Entry& entry) const;
   void markUsed(Entries::iterator entry);
   void take(QueuedJob& finished);
   void keepError(std::uint32_t stream, std::shared_ptr<const Error> error);
@@ -130,7 +146,8 @@ class TileStreamer {
   std::unordered_map<TileKey, Entries::iterator> places_;
   std::vector<Entries::iterator> pending_;
   std::vector<std::shared_ptr<QueuedJob>> finished_;  ///< taken from the queue, not yet into entries
-  std::unordered_map<std::uint32_t, std::shared_ptr<const Error>> lastErrors_;
+  std::unordered_map<std::uint32_t, Stream> streams_;
+  Clock::time_point now_ = Clock::now();  ///< at the beginning of the frame
 };
 
 }  // namespace meridian::globebrowsing

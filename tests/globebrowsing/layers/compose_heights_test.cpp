@@ -60,6 +60,24 @@ TEST(ComposeHeights, WhatIsNoNumberShowsWhatIsBelow) {
   EXPECT_THAT(composeHeights(std::vector<HeightPart>{{&nothing}}, threeByThree).metres, testing::Each(0.0F));
 }
 
+TEST(ComposeHeights, AnAncestorsHeightsAreEnlarged) {
+  HeightPixels slope = filled(0.0F);
+  for (std::size_t i = 0; i < slope.metres.size(); ++i) {
+    slope.metres[i] =
+        static_cast<float>(10 * (i % 5) + 100 * (i / 5));  // columns and rows from -1/2 to 3/2 of the tile
+  }
+  // The south-western quarter: half as many columns and rows further apart, from the middle of the left edge.
+  const std::vector<HeightPart> parts{{&slope, {}, 1.0, {{0.0, 0.5}, {0.5, 0.5}}}};
+  const ComposedHeights composed = composeHeights(parts, threeByThree);
+  for (std::size_t row = 0; row < 5; ++row) {
+    for (std::size_t column = 0; column < 5; ++column) {
+      const double expected = 10.0 * (1.0 + 0.5 * (static_cast<double>(column) - 1.0)) +
+                              100.0 * (2.0 + 0.5 * (static_cast<double>(row) - 1.0));
+      EXPECT_FLOAT_EQ(composed.metres[row * 5 + column], static_cast<float>(expected)) << column << " " << row;
+    }
+  }
+}
+
 TEST(ComposeHeights, TheRangeIsOfTheInteriorOnly) {
   HeightPixels pixels = filled(5.0F);
   pixels.metres[0] = -1000.0F;  // in the apron

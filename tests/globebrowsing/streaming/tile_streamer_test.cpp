@@ -45,6 +45,46 @@ class TileStreamerTest : public testing::Test {
   std::uint32_t stream_ = streamer_.newStream();
 };
 
+TEST_F(TileStreamerTest, ATileIsLateWhenNothingComesOfItsStream) {
+  Gate gate(pool_);
+  const auto askUntil = [&](auto holds) {
+    const auto start = std::chrono::steady_clock::now();
+    while (true) {
+      streamer_.beginFrame();
+      const bool late = ask(1).isLate;
+      streamer_.endFrame();
+      if (holds(late)) {
+        return std::chrono::steady_clock::now() - start;
+      }
+    }
+  };
+  EXPECT_GE(askUntil([](bool late) { return late; }), TileStreamer::patience);
+  EXPECT_TRUE(ask(2).isLate) << "nor is it worth waiting for the next one";
+  const TileKey other = keyOf(streamer_.newStream(), 1);
+  EXPECT_FALSE(streamer_.request(other, 1.0, [&] { return tileJob(other, 10); }).isLate) << "another stream";
+  gate.open();
+  pool_.drain();
+  streamer_.beginFrame();
+  EXPECT_EQ(ask(1).state, State::Ready);
+  EXPECT_FALSE(ask(3).isLate) << "the stream has been heard of";
+}
+
+TEST_F(TileStreamerTest, ADroppedTileIsMadeAnew) {
+  load({1});
+  const std::size_t before = streamer_.bytes();
+  streamer_.drop(keyOf(stream_, 1));
+  EXPECT_LT(streamer_.bytes(), before);
+  EXPECT_EQ(streamer_.peek(keyOf(stream_, 1)).state, State::Absent);
+  streamer_.drop(keyOf(stream_, 2));  // never there
+  Gate gate(pool_);
+  ask(1);
+  streamer_.drop(keyOf(stream_, 1));  // while it waits
+  EXPECT_EQ(streamer_.pending(), 0U);
+  EXPECT_EQ(streamer_.pending(stream_), 0U);
+  gate.open();
+  load({1});
+}
+
 TEST_F(TileStreamerTest, ATileIsPendingThenReadyAndItsJobIsMadeOnce) {
   int made = 0;
   const TileKey key = keyOf(stream_, 3);

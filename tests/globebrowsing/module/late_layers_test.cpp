@@ -1,0 +1,108 @@
+// What is seen while the server of one layer of several does not answer.
+#include "globe_fixture.h"
+#include "support/server_process.h"
+#include "support/world_raster.h"
+
+namespace meridian::globebrowsing {
+namespace {
+
+class LateLayersTest : public GlobeTest {
+ protected:
+  void SetUp() override {
+    GlobeTest::SetUp();
+    if (!graphics_) {
+      return;
+    }
+    setModuleProperty("NetworkCacheMode", "off");
+    WorldRaster::write(folder_ / "world.tif");
+    WorldRaster::cut(folder_ / "world.tif", folder_ / "tiles");
+    document_ = WorldRaster::document("http://127.0.0.1:" + std::to_string(port_));
+  }
+  void startServer() {
+    server_ = std::make_unique<ServerProcess>(ServerProcess::fileServer((folder_ / "tiles").string(), port_), port_);
+  }
+  /// The colours of the server's layer, and another as much over it.
+  static Pixel worldUnder(const Pixel& over, double opacity, double longitude, double latitude) {
+    Pixel mixed{};
+    for (std::size_t band = 0; band < 3; ++band) {
+      const double world = WorldRaster::value(static_cast<int>(band), longitude, latitude);
+      mixed[band] = static_cast<int>(std::lround(world + (over[band] - world) * opacity));
+    }
+    return mixed;
+  }
+  [[nodiscard]] bool shows(const Pixel& expected) const {
+    const Pixel seen = centre();
+    return std::equal(seen.begin(), seen.end(), expected.begin(), [](int a, int b) { return std::abs(a - b) <= 4; });
+  }
+
+  const int port_ = freePort();
+  std::string document_;
+  std::unique_ptr<ServerProcess> server_;
+};
+
+TEST_F(LateLayersTest, OtherColoursShowUntilTheServerIsThere) {
+  const Pixel local{200, 30, 90};
+  RenderableGlobe& globe =
+      addGlobe({{"ColorLayers",
+                 listOf({fileLayer("Local", uniformRaster("local.tif", local)), fileLayer("World", document_)})}});
+  ASSERT_TRUE(framesUntil([&] { return shows(local); }));
+  EXPECT_NE(unsettled(), "");
+  look(0.4, 1.2, 8e6);  // tiles that nobody has asked for yet
+  ASSERT_TRUE(framesUntil([&] { return shows(local); }));
+  globe.layers().group(LayerGroupId::ColorLayers).find("Local")->multiplier.put(0.5);
+  ASSERT_TRUE(framesUntil([&] { return shows({100, 15, 45}); })) << "a layer can be adjusted meanwhile";
+  EXPECT_NE(unsettled(), "");
+
+  startServer();
+  ASSERT_TRUE(settle());
+  EXPECT_TRUE(shows(worldUnder(local, 0.0, 1.2, 0.4))) << testing::PrintToString(centre());
+}
+
+TEST_F(LateLayersTest, WhatTheServerSentBeforeStandsInForWhatIsMissing) {
+  const Pixel local{200, 30, 90};
+  RenderableGlobe& globe = addGlobe(
+      {{"ColorLayers", listOf({fileLayer("World", document_),
+                               fileLayer("Local", uniformRaster("local.tif", local, 4096), {{"Enabled", false}})})}});
+  startServer();
+  look(0.4, 1.2, 6e7);
+  ASSERT_TRUE(settle());
+  server_.reset();
+  Layer& over = *globe.layers().group(LayerGroupId::ColorLayers).find("Local");
+  over.enabled.put(true);
+  over.opacity.put(0.5);
+  look(0.4, 1.2, 7e6);
+  const Pixel expected = worldUnder(local, 0.5, 1.2, 0.4);
+  ASSERT_TRUE(framesUntil([&] { return shows(expected); })) << testing::PrintToString(centre());
+  EXPECT_NE(unsettled(), "");
+  startServer();
+  ASSERT_TRUE(settle([&] { ASSERT_TRUE(shows(expected)) << testing::PrintToString(centre()); }));
+}
+
+TEST_F(LateLayersTest, TheGlobeIsSmoothUntilItsHeightsAreThere) {
+  const Pixel local{200, 30, 90};
+  RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({fileLayer("Local", uniformRaster("local.tif", local))})},
+                                     {"HeightLayers", listOf({fileLayer("World", document_)})}});
+  look(0.4, 1.2, 8e6);
+  ASSERT_TRUE(framesUntil([&] { return shows(local); })) << "no globe without heights";
+  EXPECT_EQ(globe.ground()->heightAt(0.4, 1.2), 0.0);
+  EXPECT_NE(unsettled(), "");
+  startServer();
+  ASSERT_TRUE(settle());
+  EXPECT_NEAR(globe.ground()->heightAt(0.4, 1.2), WorldRaster::value(0, 1.2, 0.4), 3.0);
+}
+
+TEST_F(LateLayersTest, ColoursOfHeightsFollowWhenTheHeightsCome) {
+  const Value ramp = tableOf(
+      {{"Identifier", "Ramp"}, {"Type", "ColorRelief"}, {"Enabled", true}, {"ColorRamp", "0 0 0 0; 255 255 255 255"}});
+  addGlobe({{"ColorLayers", listOf({ramp})}, {"HeightLayers", listOf({fileLayer("World", document_)})}});
+  look(0.4, 1.2, 8e6);
+  ASSERT_FALSE(shows({0, 0, 0}) && unsettled().empty());
+  ASSERT_TRUE(framesUntil([&] { return statistics_.tiles.loaded > 0; })) << "heights of nothing are composed";
+  startServer();
+  ASSERT_TRUE(settle());
+  const int height = WorldRaster::value(0, 1.2, 0.4);
+  EXPECT_TRUE(shows({height, height, height})) << testing::PrintToString(centre());
+}
+
+}  // namespace
+}  // namespace meridian::globebrowsing
