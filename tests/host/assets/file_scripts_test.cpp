@@ -106,8 +106,8 @@ TEST_F(FileScriptsTest, WritesBelowTheCacheAndNamesTokens) {
 std::string zipOf(const std::vector<std::pair<std::string, std::string>>& files) {
   const auto number = [](std::uint64_t value, int bytes) {
     std::string text;
-    for (int i = 0; i < bytes; ++i) {
-      text += static_cast<char>(value >> (8 * i) & 0xff);
+    for (int i = 0; i < bytes; ++i, value >>= 8) {
+      text += static_cast<char>(value & 0xff);
     }
     return text;
   };
