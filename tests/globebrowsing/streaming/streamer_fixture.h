@@ -42,21 +42,24 @@ inline std::unique_ptr<TileJob> tileJob(const TileKey& key, std::size_t bytes) {
       [=](const std::stop_token&) { return TileDataPointer(std::make_shared<CountedTile>(key, bytes)); });
 }
 
-/// Keeps a worker busy until it is opened.
+/// Keeps a worker busy until it is opened; may be gone before the worker has noticed.
 class Gate {
  public:
   explicit Gate(WorkerPool& pool) {
-    pool.post([this](const std::stop_token&) {
-      entered_.count_down();
-      opened_.wait();
+    pool.post([latches = latches_](const std::stop_token&) {
+      latches->entered.count_down();
+      latches->opened.wait();
     });
-    entered_.wait();
+    latches_->entered.wait();
   }
-  void open() { opened_.count_down(); }
+  void open() { latches_->opened.count_down(); }
 
  private:
-  std::latch entered_{1};
-  std::latch opened_{1};
+  struct Latches {
+    std::latch entered{1};
+    std::latch opened{1};
+  };
+  std::shared_ptr<Latches> latches_ = std::make_shared<Latches>();
 };
 
 }  // namespace meridian::globebrowsing
