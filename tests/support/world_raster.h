@@ -58,19 +58,33 @@ struct WorldRaster {
       const int side = 512 >> level;
       for (int column = 0; column < columns / side; ++column) {
         const std::filesystem::path place = folder / std::to_string(level) / std::to_string(column);
-        std::filesystem::create_directories(place);
         for (int row = 0; row < rows / side; ++row) {
           std::vector<std::uint8_t> pixels(std::size_t{3} * 256 * 256);
           check(whole->RasterIO(GF_Read, column * side, row * side, side, side, pixels.data(), 256, 256, GDT_Byte, 3,
                                 nullptr, 0, 0, 0, &resampling));
-          GDALDatasetUniquePtr tile(
-              GetGDALDriverManager()->GetDriverByName("MEM")->Create("", 256, 256, 3, GDT_Byte, nullptr));
-          check(tile->RasterIO(GF_Write, 0, 0, 256, 256, pixels.data(), 256, 256, GDT_Byte, 3, nullptr, 0, 0, 0,
-                               nullptr));
-          const std::string file = (place / (std::to_string(row) + ".png")).string();
-          GDALDatasetUniquePtr(GetGDALDriverManager()->GetDriverByName("PNG")->CreateCopy(
-              file.c_str(), tile.get(), FALSE, nullptr, nullptr, nullptr));
+          writePng(place / (std::to_string(row) + ".png"), pixels);
         }
+      }
+    }
+  }
+
+  /// The tiles of levels 0 to 2 in EPSG:3857, rows from the north, each written to name(level, column, row).
+  static void cutMercator(const std::function<std::filesystem::path(int, int, int)>& name) {
+    constexpr int side = 256;
+    for (int level = 0; level < 3; ++level) {
+      for (int tile = 0; tile < 1 << (2 * level); ++tile) {
+        const int column = tile % (1 << level);
+        const int row = tile >> level;
+        std::vector<std::uint8_t> pixels;
+        for (int band = 0; band < 3; ++band) {
+          for (int i = 0; i < side * side; ++i) {
+            const double x = std::ldexp(column + (i % side + 0.5) / side, -level);
+            const double y = std::ldexp(row + (i / side + 0.5) / side, -level);
+            pixels.push_back(value(band, (2.0 * x - 1.0) * std::numbers::pi,
+                                   std::atan(std::sinh((1.0 - 2.0 * y) * std::numbers::pi))));
+          }
+        }
+        writePng(name(level, column, row), pixels);
       }
     }
   }
@@ -86,6 +100,16 @@ struct WorldRaster {
   }
 
  private:
+  /// Three bands of 256 x 256, one after the other.
+  static void writePng(const std::filesystem::path& path, std::vector<std::uint8_t>& pixels) {
+    GDALAllRegister();
+    std::filesystem::create_directories(path.parent_path());
+    GDALDatasetUniquePtr tile(
+        GetGDALDriverManager()->GetDriverByName("MEM")->Create("", 256, 256, 3, GDT_Byte, nullptr));
+    check(tile->RasterIO(GF_Write, 0, 0, 256, 256, pixels.data(), 256, 256, GDT_Byte, 3, nullptr, 0, 0, 0, nullptr));
+    GDALDatasetUniquePtr(GetGDALDriverManager()->GetDriverByName("PNG")->CreateCopy(path.c_str(), tile.get(), FALSE,
+                                                                                    nullptr, nullptr, nullptr));
+  }
   static void check(CPLErr code) {
     if (code != CE_None) {
       throw std::runtime_error(CPLGetLastErrorMsg());

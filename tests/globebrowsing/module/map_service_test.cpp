@@ -56,6 +56,42 @@ TEST_F(MapServiceTest, AServicesPictureIsThatOfTheFile) {
   EXPECT_THAT(server.accessLog(), HasSubstr(" 200 /1/"));
 }
 
+TEST_F(MapServiceTest, AddressesOfTilesAndArcGisCachesShowTheSame) {
+  if (!NginxServer::isInstalled()) {
+    GTEST_SKIP() << "nginx is not installed; install nginx-light";
+  }
+  NginxServer server;
+  const auto path = [](std::initializer_list<int> parts) {
+    std::filesystem::path joined;
+    for (const int part : parts) {
+      joined /= std::to_string(part);
+    }
+    return joined;
+  };
+  const std::filesystem::path arcGis = server.root() / "arcgis/rest/services/World/MapServer";
+  WorldRaster::cutMercator([&](int level, int column, int row) {
+    return server.root() / "xyz" / path({level, column}) / (std::to_string(row) + ".png");
+  });
+  WorldRaster::cutMercator([&](int level, int column, int row) {
+    return arcGis / "tile" / path({level, row, column});
+  });
+  std::ofstream(arcGis / "index.html") << R"({"currentVersion": 10.91, "mapName": "World", "singleFusedMapCache": true,
+      "spatialReference": {"wkid": 102100, "latestWkid": 3857}, "copyrightText": "The makers", "tileInfo": {"rows": 256,
+      "cols": 256, "dpi": 96, "format": "PNG", "origin": {"x": -20037508.342787, "y": 20037508.342787},
+      "spatialReference": {"wkid": 102100, "latestWkid": 3857},
+      "lods": [{"level": 0, "resolution": 156543.03392800014, "scale": 591657527.591555},
+      {"level": 1, "resolution": 78271.51696399994, "scale": 295828763.795777},
+      {"level": 2, "resolution": 39135.75848200009, "scale": 147914381.897889}]},
+      "fullExtent": {"xmin": -20037508.342787, "ymin": -20037508.342787, "xmax": 20037508.342787,
+      "ymax": 20037508.342787, "spatialReference": {"wkid": 102100, "latestWkid": 3857}}})";
+  const std::vector<std::uint8_t> expected = pictureOf((folder_ / "world.tif").string());
+  EXPECT_LE(difference(pictureOf(server.http1() + "/xyz/{z}/{x}/{y}.png"), expected), 3);
+  EXPECT_THAT(server.accessLog(), HasSubstr(" 200 /xyz/2/"));
+  EXPECT_LE(difference(pictureOf(server.http1() + "/arcgis/rest/services/World/MapServer?f=json"), expected), 3);
+  EXPECT_THAT(server.accessLog(), HasSubstr(" 200 /arcgis/rest/services/World/MapServer/tile/2/"));
+  EXPECT_THAT(server.accessLog(), testing::Not(HasSubstr(" 404 "))) << "neither has more than it says";
+}
+
 TEST_F(MapServiceTest, TheViewWaitsForAServerThatIsDown) {
   WorldRaster::cut(folder_ / "world.tif", folder_ / "tiles");
   const int port = freePort();
