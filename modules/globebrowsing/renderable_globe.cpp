@@ -216,7 +216,8 @@ void RenderableGlobe::updateSurfaces(const FrameContext& frame, TexturePoolShare
   }
   if (replacement_) {
     replacement_->update(frame, settings());
-    if (replacement_->settled(0).complete) {
+    // A server that is down must not keep this globe from its share, nor from giving it up.
+    if (replacement_->settled(0).complete || replacement_->filled()) {
       surface_ = std::move(replacement_);
       pool_ = replacementPool_;
       hold();

@@ -107,13 +107,14 @@ void SkirtFitter::fit(const Tiling& tiling, NodePool& pool, const Drawn& drawn) 
       }
       SelectedChunk& other = drawn.chunks[static_cast<std::size_t>(slot->chunk)];
       const bool unequal = other.index.level != chunk.index.level;
-      if (!unequal && node.sameEdge[edge] && other.step == chunk.step) {
+      const SurfaceErrors& errors = pool[drawn.numbers[static_cast<std::size_t>(slot->chunk)]].errors;
+      const double unlike = std::max(node.errors.unlike, errors.unlike);
+      if (!unequal && node.sameEdge[edge] && other.step == chunk.step && unlike == 0.0) {
         continue;
       }
       chunk.skirtEdges |= bit;
       other.skirtEdges |= bitOf(node.neighbourEdges[edge]);
-      const SurfaceErrors& errors = pool[drawn.numbers[static_cast<std::size_t>(slot->chunk)]].errors;
-      const double relief = unequal ? errors.vertical.back() : 0.0;
+      const double relief = (unequal ? errors.vertical.back() : 0.0) + unlike;
       chunk.skirt = std::max(chunk.skirt, other.error + relief);
       other.skirt = std::max(other.skirt, chunk.error + relief);
     }

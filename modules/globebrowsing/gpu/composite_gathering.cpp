@@ -43,25 +43,42 @@ void CompositeStore::request(Request request, const LayerOpacity& other) {
 
 bool CompositeStore::isGain(const Request& request) const {
   const std::span<const CompositionPart> parts(parts_.data() + request.firstPart, request.partCount);
-  if (std::none_of(parts.begin(), parts.end(), [](const CompositionPart& part) {
-        return part.tile != nullptr || part.relief != nullptr || part.layer->sampling() == Sampling::SolidColor;
-      })) {
-    return false;
+  const CompositeKey& key = request.key;
+  const std::optional<std::uint32_t> first = slots_.peek({key.kind, key.index, of(key.kind).shown.side});
+  if (key.side == CompositeKey::fadeSide && first && request.lack > slotContents_[*first].lack) {
+    return false;  // the layer that is late would fade, too
   }
-  const std::optional<std::uint32_t> slot = slots_.peek(request.key);
+  const std::optional<std::uint32_t> slot = slots_.peek(key);
+  const auto hasSomething = [](const CompositionPart& part) {
+    return part.tile != nullptr || part.relief != nullptr || part.layer->sampling() == Sampling::SolidColor;
+  };
+  const bool isEmpty = std::none_of(parts.begin(), parts.end(), hasSomething);
   if (!slot) {
-    return true;
+    return !isEmpty;
   }
   const Contents& there = slotContents_[*slot];
+  if (isEmpty) {
+    // An ancestor's composite is better than nothing, unless what is drawn is no longer enabled.
+    return std::any_of(there.layers.begin(), there.layers.end(), [&parts](const LayerOpacity& layer) {
+      return std::none_of(parts.begin(), parts.end(),
+                          [&](const CompositionPart& part) { return part.layer->version() == layer.version; });
+    });
+  }
   const auto isThere = [](const CompositionPart& part, const LayerOpacity& layer) {
     return part.layer->version() == layer.version && part.opacity == layer.opacity;
   };
-  return there.stamp != generationOf(request.key).stamp || request.lack < there.lack ||
+  return there.stamp != generationOf(key).stamp || request.lack < there.lack ||
          !std::equal(parts.begin(), parts.end(), there.layers.begin(), there.layers.end(), isThere);
 }
 
+bool CompositeStore::showsEarlier(const CompositeKey& key) const {
+  const std::optional<std::uint32_t> slot = slots_.peek(key);
+  const Generation& generation = generationOf(key);
+  return slot && slotContents_[*slot].stamp >= generation.since && slotContents_[*slot].stamp != generation.stamp;
+}
+
 bool CompositeStore::mayLack(const Layer& layer, const CompositeKey& key) const {
-  return layer.provider()->steps() == nullptr || (&generationOf(key) == &of(key.kind).shown && !stateOf(key).present);
+  return layer.provider()->steps() == nullptr || (&generationOf(key) == &of(key.kind).shown && !showsEarlier(key));
 }
 
 Lack CompositeStore::gather(const CompositeKey& key, double priority, const LayerOpacity& other) {
@@ -97,7 +114,7 @@ Lack CompositeStore::gatherPart(CompositionPart& part, const LayerStepPointer& s
   if (colourHeights) {
     part.key = {relief_.stream(), index};
     part.pixelMetres = pixelMetres(*tiling_, key.index);
-    answer = relief_.request(index, priority);
+    answer = relief_.request(index, priority, showsEarlier(key));
   } else if (const std::shared_ptr<TileProvider>& tiles = step->tiles(); tiles->overlaps(*tiling_, index)) {
     part.key = {step->stream(), index};
     answer = streamer_.request(part.key, priority, [&] { return std::make_unique<ColourJob>(tiles, tiling_, index); });

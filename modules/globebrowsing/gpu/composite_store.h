@@ -244,6 +244,8 @@ class CompositeStore {
   Lack gatherPart(CompositionPart& part, const LayerStepPointer& step, const CompositeKey& key, double priority);
   /// Whether a composite of the parts from that one on, something of which is late, is better than what there is.
   [[nodiscard]] bool isGain(const Request& request) const;
+  /// Whether the composite is drawn, but of earlier steps (or heights) of its layers.
+  [[nodiscard]] bool showsEarlier(const CompositeKey& key) const;
   /// Whether a composite may be without the layer's tile, if that is late. What shows a layer at another time is better
   /// than what does not show it.
   [[nodiscard]] bool mayLack(const Layer& layer, const CompositeKey& key) const;

@@ -53,6 +53,7 @@ GlobeTiles::GlobeTiles(std::shared_ptr<const Tiling> tiling, LayerManager& layer
 
 void GlobeTiles::beginFrame(std::uint64_t frame) {
   stale_ = 0;
+  absent_ = 0;
   surfaces_.beginFrame(frame);
   composites_.beginFrame(frame);
 }
@@ -65,8 +66,9 @@ void GlobeTiles::process(graphics::UploadBudget& uploads, double compositionMill
 
 void GlobeTiles::want(const TileIndex& index, int colourLevel, double priority) {
   const bool shaped = surfaces_.want(index, priority);
-  const bool coloured = composites_.want(index, colourLevel, priority).current;
-  stale_ += shaped && coloured ? 0 : 1;
+  const CompositeStore::State coloured = composites_.want(index, colourLevel, priority);
+  stale_ += shaped && coloured.current ? 0 : 1;
+  absent_ += surfaces_.find(index) != nullptr && coloured.present ? 0 : 1;
 }
 
 void GlobeTiles::keep(const TileIndex& index, int colourLevel) {
@@ -127,6 +129,7 @@ SurfaceErrors GlobeTiles::surfaceErrors(const TileIndex& index) const {
     errors.vertical[place] = curvature * curvatureLeft + relief * reliefLeft;
     errors.along[place] = nearest.surface->drift(step) * curvatureLeft;
   }
+  errors.unlike = nearest.isOdd ? surfaces_.highestHeight() - surfaces_.lowestHeight() : 0.0;
   return errors;
 }
 

@@ -43,6 +43,8 @@ class GlobeTiles final : public TileResidency {
   [[nodiscard]] std::size_t residentBytes() const { return surfaces_.residentBytes() + composites_.residentBytes(); }
   /// Whether the pool is too small for the view: what is missing then stays missing.
   [[nodiscard]] bool full() const { return surfaces_.full() || composites_.full(); }
+  /// Whether shapes and colours of all tiles that were wanted in this frame are there, if only without what is late.
+  [[nodiscard]] bool filled() const { return absent_ == 0; }
   /// What the tiles that were wanted in this frame still lack, or an empty string.
   [[nodiscard]] std::string waitingFor() const;
 
@@ -53,7 +55,8 @@ class GlobeTiles final : public TileResidency {
   std::shared_ptr<const Tiling> tiling_;
   SurfaceStore surfaces_;
   CompositeStore composites_;
-  std::size_t stale_ = 0;  ///< tiles wanted in this frame that are not current
+  std::size_t stale_ = 0;   ///< tiles wanted in this frame that are not current
+  std::size_t absent_ = 0;  ///< and those of which shape or colours are not there at all
 };
 
 }  // namespace meridian::globebrowsing

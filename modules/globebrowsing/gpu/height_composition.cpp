@@ -91,21 +91,22 @@ std::uint32_t HeightComposition::streamOf(const LayerStep& step) const {
   return layout_ == reliefLayout ? step.reliefStream() : step.stream();
 }
 
-Lack HeightComposition::gather(const TileIndex& index, double priority) {
+Lack HeightComposition::gather(const TileIndex& index, double priority, bool showsEarlier) {
   const std::vector<Layer*>& enabled = layers_.group(LayerGroupId::HeightLayers).enabledLayers();
   Lack lack;
   for (std::size_t i = 0; i < enabled.size(); ++i) {
     const Layer& layer = *enabled[i];
     gathered_[i] = {};
     if (layer.isReady() && layer.step()->tiles()->overlaps(*tiling_, index)) {
-      lack += gatherLayer(gathered_[i], *layer.step(), index, priority);
+      lack += gatherLayer(gathered_[i], layer, index, priority, showsEarlier);
     }
   }
   return lack;
 }
 
-Lack HeightComposition::gatherLayer(Gathered& gathered, const LayerStep& step, const TileIndex& index,
-                                    double priority) {
+Lack HeightComposition::gatherLayer(Gathered& gathered, const Layer& layer, const TileIndex& index, double priority,
+                                    bool showsEarlier) {
+  const LayerStep& step = *layer.step();
   const TileKey key{streamOf(step), index};
   const TileAnswer own = streamer_.request(
       key, priority, [&] { return std::make_unique<HeightJob>(step.tiles(), tiling_, index, layout_); });
@@ -113,7 +114,7 @@ Lack HeightComposition::gatherLayer(Gathered& gathered, const LayerStep& step, c
     gathered.tile = own.data;
     return {};
   }
-  if (!own.isLate) {
+  if (!own.isLate || (showsEarlier && layer.provider()->steps() != nullptr)) {
     return {Lack::everything, true};
   }
   const StandIn standIn = findStandIn(streamer_, *tiling_, key);
@@ -126,7 +127,7 @@ unsigned HeightComposition::lack(const TileIndex& index) const {
   return found == lacks_.end() ? 0 : found->second;
 }
 
-TileAnswer HeightComposition::request(const TileIndex& index, double priority) {
+TileAnswer HeightComposition::request(const TileIndex& index, double priority, bool showsEarlier) {
   if (opening_.waits()) {
     return {TileAnswer::State::Pending};
   }
@@ -134,7 +135,7 @@ TileAnswer HeightComposition::request(const TileIndex& index, double priority) {
   const bool isMade = streamer_.peek(key).state != TileAnswer::State::Absent;
   const unsigned lackOfMade = isMade ? lack(index) : std::numeric_limits<unsigned>::max();
   if (lackOfMade > 0) {
-    const Lack now = gather(index, priority);
+    const Lack now = gather(index, priority, showsEarlier);
     if (!isMade && now.comesSoon) {
       return {TileAnswer::State::Pending};
     }

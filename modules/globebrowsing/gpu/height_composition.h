@@ -33,8 +33,9 @@ class HeightComposition {
   void beginFrame();
   /// Of the tiles as the layers are at present; another whenever heights have changed.
   [[nodiscard]] std::uint32_t stream() const { return stream_; }
-  /// The tile, or asks for what it lacks. Pending also while height layers are being opened.
-  [[nodiscard]] TileAnswer request(const TileIndex& index, double priority);
+  /// The tile, or asks for what it lacks. Pending also while height layers are being opened, and, if the caller
+  /// `showsEarlier` heights meanwhile, for as long as a layer's next step in time is late.
+  [[nodiscard]] TileAnswer request(const TileIndex& index, double priority, bool showsEarlier);
   /// By how much the tile of request() is not what it should be; 0 when nothing was late.
   [[nodiscard]] unsigned lack(const TileIndex& index) const;
   /// Whether some enabled height layer has finer data within the tile than the tile shows. No input or output.
@@ -49,8 +50,8 @@ class HeightComposition {
 
   [[nodiscard]] std::uint32_t streamOf(const LayerStep& step) const;
   /// Looks for the raw heights of all layers, asks for those that are missing, and tells what they are.
-  Lack gather(const TileIndex& index, double priority);
-  Lack gatherLayer(Gathered& gathered, const LayerStep& step, const TileIndex& index, double priority);
+  Lack gather(const TileIndex& index, double priority, bool showsEarlier);
+  Lack gatherLayer(Gathered& gathered, const Layer& layer, const TileIndex& index, double priority, bool showsEarlier);
 
   std::shared_ptr<const Tiling> tiling_;
   LayerManager& layers_;

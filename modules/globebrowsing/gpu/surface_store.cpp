@@ -37,7 +37,7 @@ bool SurfaceStore::want(const TileIndex& index, double priority) {
   if (isCurrent && resident->second.lack == 0) {
     return true;
   }
-  const TileAnswer answer = heights_.request(index, priority);
+  const TileAnswer answer = heights_.request(index, priority, resident != resident_.end() && !isCurrent);
   const unsigned lack = heights_.lack(index);
   if (answer.state == TileAnswer::State::Ready && (!isCurrent || lack < resident->second.lack)) {
     arrivals_.push_back({index, priority, *answer.data, lack});
@@ -89,7 +89,9 @@ SurfaceStore::Nearest SurfaceStore::nearest(const TileIndex& index) const {
   std::optional<TileIndex> at = index;
   while (at) {
     if (const auto found = resident_.find(*at); found != resident_.end()) {
-      return {found->second.surface.get(), at->level, found->second.stamp};
+      const Resident& resident = found->second;
+      const bool isOdd = resident.lack > 0 || resident.stream != heights_.stream();
+      return {resident.surface.get(), at->level, resident.stamp, isOdd};
     }
     at = tiling_->parent(*at);
   }

@@ -168,6 +168,7 @@ void JobQueue::wake(const std::shared_ptr<QueuedJob>& job) {
   {
     const std::lock_guard lock(mutex_);
     if (dropFrom(aside_, *job)) {
+      job->isAside = false;
       waiting_.push_back(job);
       needsTask = claimTask();
     } else {
@@ -185,6 +186,7 @@ void JobQueue::putAside(const std::shared_ptr<QueuedJob>& job) {
     std::unique_lock lock(mutex_);
     if (dropFrom(running_, *job) && !closed_) {
       job->hasBegun = true;
+      job->isAside = !job->isWoken;
       (job->isWoken ? waiting_ : aside_).push_back(job);
     } else {  // it was cancelled
       lock.unlock();

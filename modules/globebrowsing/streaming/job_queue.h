@@ -29,6 +29,7 @@ struct QueuedJob {
   std::stop_source stop;
   Result<TileDataPointer> result = TileDataPointer();  ///< the worker's until the job is among the finished
   std::optional<Error> flaw;                           ///< the same
+  std::atomic<bool> isAside = false;                   ///< waits for data from elsewhere
   bool hasBegun = false;                               ///< prepared once; the queue's
   bool isWoken = false;                                ///< while it was being prepared; the queue's
 };

@@ -17,6 +17,8 @@ struct SurfaceErrors {
   static constexpr std::size_t steps = 5;
   std::array<double, steps> vertical{};  ///< metres between it and its height tile's nodes
   std::array<double, steps> along{};     ///< metres that what lies on it is shifted: parallels drawn as chords
+  /// Metres by which its edges may miss a neighbour's that has the same vertices: it is made from other data.
+  double unlike = 0.0;
 };
 
 /// What selection may know of what is in memory. Declared here so that the chunk tree needs neither OpenGL nor layers;

@@ -35,7 +35,9 @@ TileStreamer::~TileStreamer() {
 TileAnswer TileStreamer::answer(const Entry& entry) const {
   if (entry.job != nullptr) {
     TileAnswer pending{TileAnswer::State::Pending};
-    pending.isLate = now_ - streams_.at(entry.key.stream).heard > patience || now_ - entry.asked > 3 * patience;
+    const Stream& stream = streams_.at(entry.key.stream);
+    pending.isLate = stream.asideFrame + 1 >= frame_ &&
+                     (now_ - stream.heard > patience || (entry.job->isAside && now_ - entry.asked > 3 * patience));
     return pending;
   }
   if (entry.error != nullptr) {
@@ -69,10 +71,7 @@ TileAnswer TileStreamer::enqueue(const TileKey& key, double priority, std::uniqu
   entry.pendingPlace = pending_.size();
   pending_.push_back(entries_.begin());
   entry.asked = now_;
-  Stream& stream = streams_[key.stream];
-  if (stream.pending++ == 0) {
-    stream.heard = now_;
-  }
+  ++streams_[key.stream].pending;
   ++statistics_->tiles.requested;
   queue_->add(entry.job);
   return answer(entry);
@@ -191,6 +190,12 @@ void TileStreamer::endFrame() {
     if (const Entries::iterator entry = pending_[i]; entry->lastUse != frame_) {
       cancel(*entry);
       erase(entry);
+    } else if (entry->job->isAside) {
+      Stream& stream = streams_[entry->key.stream];
+      if (stream.asideFrame + 1 < frame_) {
+        stream.heard = now_;
+      }
+      stream.asideFrame = frame_;
     }
   }
   queue_->renewPriorities();

@@ -33,8 +33,9 @@ struct TileAnswer {
   State state = State::Absent;
   const TileDataPointer* data = nullptr;
   const Error* error = nullptr;
-  /// Pending, and better not waited for: nothing has come of its stream for TileStreamer::patience, or it was itself
-  /// asked for three times as long ago. Go on without it, and ask again.
+  /// Pending, and better not waited for: tiles of its stream wait for data from elsewhere, and none has come for
+  /// TileStreamer::patience; or this one waits for them, and was asked for three times as long ago. Go on without it,
+  /// and ask again.
   bool isLate = false;
 };
 
@@ -57,7 +58,7 @@ struct TileStreamerOptions {
 /// Render thread only, but for what jobs do. A frame that asks for nothing new allocates nothing.
 class TileStreamer {
  public:
-  /// Local data come within milliseconds, those of a server that works at least now and then.
+  /// Of a server that works something comes at least now and then.
   static constexpr std::chrono::milliseconds patience{1000};
 
   /// Both outlive the streamer. Counts into statistics.tiles (a cache hit is a tile that was not in use any more and is
@@ -120,7 +121,8 @@ class TileStreamer {
   };
   struct Stream {
     std::size_t pending = 0;
-    Clock::time_point heard;  ///< of it last, or when the first of those that are pending was asked for
+    std::uint64_t asideFrame = 0;  ///< the last at whose end tiles waited for data from elsewhere
+    Clock::time_point heard;       ///< of it last, or when the first of these began to wait
     std::shared_ptr<const Error> lastError;
   };
   using Entries = std::list<Entry>;

@@ -93,6 +93,10 @@ void ChunkedSurface::draw(const FrameContext& frame, std::size_t view) {
                  *tiles_);
 }
 
+bool ChunkedSurface::filled() const {
+  return renderer_.programs().ready() && tiles_->filled() && tree_.figures().atTarget;
+}
+
 Settled ChunkedSurface::settled(std::size_t /*view*/) const {
   // One selection serves all views, so they settle together.
   if (!programTrouble_.empty()) {

@@ -27,6 +27,7 @@ class ChunkedSurface final : public Surface {
   void update(const FrameContext& frame, const SurfaceSettings& settings) override;
   void draw(const FrameContext& frame, std::size_t view) override;
   [[nodiscard]] Settled settled(std::size_t view) const override;
+  [[nodiscard]] bool filled() const override;
   [[nodiscard]] std::size_t residentBytes() const override { return tiles_->residentBytes(); }
   [[nodiscard]] double heightAt(double latitude, double longitude) const override;
   [[nodiscard]] std::optional<glm::dvec3> pick(const glm::dvec3& origin, const glm::dvec3& direction) const override;

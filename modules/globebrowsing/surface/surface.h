@@ -34,6 +34,9 @@ class Surface {
   /// Of the last frame's view of that number.
   [[nodiscard]] virtual Settled settled(std::size_t view) const = 0;
 
+  /// Whether all that the last frame wanted is drawn, if only without what is late.
+  [[nodiscard]] virtual bool filled() const = 0;
+
   /// Of the textures and buffers that hold something.
   [[nodiscard]] virtual std::size_t residentBytes() const = 0;
 

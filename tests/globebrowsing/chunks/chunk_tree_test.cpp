@@ -462,6 +462,34 @@ TEST_F(ChunkTreeTest, AsksForHeightRangesOnlyWhenTheyChange) {
   EXPECT_GT(residency_.rangesAsked, 0);
 }
 
+TEST_F(ChunkTreeTest, SkirtsHangBetweenSurfacesOfDifferentData) {
+  residency_.finerColours = [](const TileIndex& index) { return index.level < 4; };
+  select(above(0.3, 0.7, 3e6, 0.0, 0.0));
+  const auto edgesOf = [&] {
+    std::map<TileIndex, SelectedChunk> chunks;
+    for (const SelectedChunk& chunk : tree_.selected()) {
+      chunks[chunk.index] = chunk;
+    }
+    return chunks;
+  };
+  const std::map<TileIndex, SelectedChunk> alike = edgesOf();
+  residency_.unlikeInOddColumns = 5000.0;
+  select(above(0.3, 0.7, 3e6, 0.0, 0.0));
+  int between = 0;
+  for (const auto& [index, chunk] : edgesOf()) {
+    const std::optional<Neighbour> east = tiling_.neighbour(index, Edge::East);
+    const bool hasEast = east && alike.contains(east->index) && alike.contains(index) &&
+                         alike.at(index).step == alike.at(east->index).step;
+    if (hasEast && east->index.x % 2 != index.x % 2) {
+      ++between;
+      EXPECT_TRUE(chunk.skirtEdges & bitOf(Edge::East)) << toString(index);
+      EXPECT_GE(chunk.skirt, 5000.0) << toString(index);
+      EXPECT_LT(alike.at(index).skirt, 5000.0) << toString(index);
+    }
+  }
+  EXPECT_GT(between, 5);
+}
+
 TEST_F(ChunkTreeTest, SkirtsReachOverEveryGap) {
   // Relief that differs from tile to tile, so that levels and densities are mixed.
   residency_.finerColours = [](const TileIndex& index) { return index.level < 3 + static_cast<int>(index.x % 7); };

@@ -62,10 +62,12 @@ class FakeResidency final : public TileResidency {
       vertical = error;
       error *= 0.25;
     }
+    errors.unlike = index.x % 2 == 1 ? unlikeInOddColumns : 0.0;
     return errors;
   }
   [[nodiscard]] bool hasFinerColours(const TileIndex& index) const override { return finerColours(index); }
 
+  double unlikeInOddColumns = 0.0;
   std::vector<Wish> wishes;
   bool allFinite = true;
   mutable int rangesAsked = 0;

@@ -1,6 +1,7 @@
 // What is seen while the server of one layer of several does not answer.
 #include "globe_fixture.h"
 #include "support/server_process.h"
+#include "support/timed_pyramid.h"
 #include "support/world_raster.h"
 
 namespace meridian::globebrowsing {
@@ -76,6 +77,56 @@ TEST_F(LateLayersTest, WhatTheServerSentBeforeStandsInForWhatIsMissing) {
   EXPECT_NE(unsettled(), "");
   startServer();
   ASSERT_TRUE(settle([&] { ASSERT_TRUE(shows(expected)) << testing::PrintToString(centre()); }));
+}
+
+TEST_F(LateLayersTest, AToggleShowsThoughNothingOfTheOthersIsThere) {
+  const Pixel local{200, 30, 90};
+  RenderableGlobe& globe =
+      addGlobe({{"ColorLayers",
+                 listOf({fileLayer("Local", uniformRaster("local.tif", local)), fileLayer("World", document_)})}});
+  ASSERT_TRUE(framesUntil([&] { return shows(local); }));
+  globe.layers().group(LayerGroupId::ColorLayers).find("Local")->enabled.put(false);
+  EXPECT_TRUE(framesUntil([&] { return !shows(local); }));
+}
+
+TEST_F(LateLayersTest, ALayerOfTimesHoldsUpNoOtherEither) {
+  const Pixel local{200, 30, 90};
+  const TimedPyramid pyramid{.days = 2, .levels = 2};
+  std::filesystem::create_directories(folder_ / "tiles");
+  pyramid.write(folder_ / "tiles", "http://127.0.0.1:" + std::to_string(port_));
+  std::filesystem::rename(folder_ / "tiles/days", folder_ / "tiles/later");
+  std::filesystem::remove_all(folder_ / "tiles/1");
+  time_ = TimedPyramid::timeOf(1);
+  // Its capabilities are on disk, its tiles nowhere.
+  const std::string days = "WMTS:" + (folder_ / "tiles/wmts.xml").string() + ",layer=Days";
+  RenderableGlobe& globe = addGlobe(
+      {{"ColorLayers", listOf({fileLayer("Local", uniformRaster("local.tif", local)), fileLayer("Days", days)})}});
+  ASSERT_TRUE(framesUntil([&] { return shows(local); }));
+  globe.layers().group(LayerGroupId::ColorLayers).find("Local")->multiplier.put(0.5);
+  EXPECT_TRUE(framesUntil([&] { return shows({100, 15, 45}); }));
+  std::filesystem::rename(folder_ / "tiles/later", folder_ / "tiles/days");
+  startServer();
+  ASSERT_TRUE(settle());
+  const auto day = TimedPyramid::colourOf(1);
+  const Pixel seen = centre();
+  for (std::size_t band = 0; band < 3; ++band) {
+    EXPECT_NEAR(seen[band], day[band], TimedPyramid::grain + 4);
+  }
+}
+
+TEST_F(LateLayersTest, TheGlobeMovesToAnotherPoolAllTheSame) {
+  const Pixel local{200, 30, 90};
+  addGlobe({{"ColorLayers",
+             listOf({fileLayer("World", document_), fileLayer("Local", uniformRaster("local.tif", local))})}});
+  ASSERT_TRUE(framesUntil([&] { return shows(local); }));
+  setModuleProperty("TexturePoolSize", 128);
+  frame();
+  const std::string moves = unsettled();
+  EXPECT_NE(moves.find("another size"), std::string::npos) << moves;
+  EXPECT_TRUE(framesUntil([&] {
+    EXPECT_TRUE(shows(local));
+    return unsettled() != moves;
+  }));
 }
 
 TEST_F(LateLayersTest, TheGlobeIsSmoothUntilItsHeightsAreThere) {

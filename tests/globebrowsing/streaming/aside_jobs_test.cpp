@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <map>
 #include <mutex>
@@ -135,6 +136,43 @@ TEST_F(AsideJobs, WaitWithoutAWorkerAndRunWhenTheirDataAreThere) {
     streamer_.touch(local);
   });
   EXPECT_EQ(statistics_.tiles.failed, 0U);
+}
+
+TEST_F(AsideJobs, AreLateWhenNothingComesOfTheirStream) {
+  const std::uint32_t other = streamer_.newStream();
+  const auto start = std::chrono::steady_clock::now();
+  bool late = false;
+  while (!late) {
+    frame([&] {
+      late = ask(1, 1.0).isLate;
+      EXPECT_EQ(ask(2, 1.0).isLate, late);
+    });
+  }
+  EXPECT_GE(std::chrono::steady_clock::now() - start, TileStreamer::patience);
+  frame([&] {
+    EXPECT_TRUE(ask(1, 1.0).isLate);
+    EXPECT_TRUE(ask(3, 1.0).isLate) << "the next one will not come either";
+    EXPECT_FALSE(ask(4, 1.0, other).isLate) << "another stream";
+  });
+  elsewhere_.deliver(1);
+  pool_.drain();
+  frame([&] {
+    EXPECT_EQ(ask(1, 1.0).state, State::Ready);
+    EXPECT_FALSE(ask(3, 1.0).isLate) << "something has come";
+  });
+}
+
+TEST_F(AsideJobs, OnlyTheyAreLate) {
+  // A worker that is busy with something else is no silent server.
+  const TileKey local = keyOf(stream_, 3);
+  Gate gate(pool_);
+  const auto end = std::chrono::steady_clock::now() + TileStreamer::patience + std::chrono::milliseconds(200);
+  while (std::chrono::steady_clock::now() < end) {
+    streamer_.beginFrame();
+    ASSERT_FALSE(streamer_.request(local, 0.0, [&] { return tileJob(local, 10); }).isLate);
+    streamer_.endFrame();
+  }
+  gate.open();
 }
 
 TEST_F(AsideJobs, GiveTheirPrioritiesOnEveryFrame) {

@@ -45,30 +45,6 @@ class TileStreamerTest : public testing::Test {
   std::uint32_t stream_ = streamer_.newStream();
 };
 
-TEST_F(TileStreamerTest, ATileIsLateWhenNothingComesOfItsStream) {
-  Gate gate(pool_);
-  const auto askUntil = [&](auto holds) {
-    const auto start = std::chrono::steady_clock::now();
-    while (true) {
-      streamer_.beginFrame();
-      const bool late = ask(1).isLate;
-      streamer_.endFrame();
-      if (holds(late)) {
-        return std::chrono::steady_clock::now() - start;
-      }
-    }
-  };
-  EXPECT_GE(askUntil([](bool late) { return late; }), TileStreamer::patience);
-  EXPECT_TRUE(ask(2).isLate) << "nor is it worth waiting for the next one";
-  const TileKey other = keyOf(streamer_.newStream(), 1);
-  EXPECT_FALSE(streamer_.request(other, 1.0, [&] { return tileJob(other, 10); }).isLate) << "another stream";
-  gate.open();
-  pool_.drain();
-  streamer_.beginFrame();
-  EXPECT_EQ(ask(1).state, State::Ready);
-  EXPECT_FALSE(ask(3).isLate) << "the stream has been heard of";
-}
-
 TEST_F(TileStreamerTest, ADroppedTileIsMadeAnew) {
   load({1});
   const std::size_t before = streamer_.bytes();
