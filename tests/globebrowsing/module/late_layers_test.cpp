@@ -151,8 +151,8 @@ TEST_F(LateLayersTest, ColoursOfHeightsFollowWhenTheHeightsCome) {
   ASSERT_TRUE(framesUntil([&] { return statistics_.tiles.loaded > 0; })) << "heights of nothing are composed";
   startServer();
   ASSERT_TRUE(settle());
-  const int height = WorldRaster::value(0, 1.2, 0.4);
-  EXPECT_TRUE(shows({height, height, height})) << testing::PrintToString(centre());
+  const int grey = WorldRaster::value(0, 1.2, 0.4);
+  EXPECT_TRUE(shows({grey, grey, grey})) << testing::PrintToString(centre());
 }
 
 }  // namespace
