@@ -75,6 +75,8 @@ class RasterGeoreference {
   [[nodiscard]] double row(double latitude) const {
     return ((isMercator_ ? std::asinh(std::tan(latitude)) : latitude) - topLatitude_) / rowStep_;
   }
+  /// Of a row coordinate; not for Mercator. Beyond a pole it goes on growing.
+  [[nodiscard]] double latitude(double row) const { return topLatitude_ + row * rowStep_; }
   /// Rows grow towards the poles with 1 / cos(latitude), so that pixels are square everywhere.
   [[nodiscard]] bool isMercator() const { return isMercator_; }
 

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "globebrowsing/source/polar_heights.h"
 #include "globebrowsing/source/raster_access.h"
 #include "globebrowsing/source/resample_parts.h"
 
@@ -135,7 +136,11 @@ Result<void> sampleTile(PixelReader& reader, const TileRequest& tile, Rgba* out,
 }
 
 Result<void> sampleTile(PixelReader& reader, const TileRequest& tile, float* out, const std::stop_token& stop) {
-  return sampleAny(reader, tile, out, stop);
+  if (!PolarHeights::concerns(reader.pyramid())) {
+    return sampleAny(reader, tile, out, stop);
+  }
+  PolarHeights smoothed(reader);
+  return sampleAny(smoothed, tile, out, stop);
 }
 
 Result<ColourPixels> readColours(PixelReader& reader, const TileRequest& tile, const std::stop_token& stop) {
