@@ -108,11 +108,18 @@ Asset* AssetGraph::find(const fs::path& file) const {
   return found == byFile_.end() ? nullptr : found->second;
 }
 
+Asset* AssetGraph::find(std::uint64_t id) const {
+  const auto found = std::lower_bound(assets_.begin(), assets_.end(), id,
+                                      [](const auto& asset, std::uint64_t sought) { return asset->id < sought; });
+  return found == assets_.end() || (*found)->id != id ? nullptr : found->get();
+}
+
 Asset& AssetGraph::load(const fs::path& file, bool enabled) {
   if (Asset* known = find(file)) {
     return *known;
   }
   Asset& asset = *assets_.emplace_back(std::make_unique<Asset>());
+  asset.id = ++lastId_;
   asset.file = file;
   byFile_.emplace(file, &asset);
   if (Result<void> done = runFile(asset, enabled); !done) {
@@ -248,8 +255,10 @@ void AssetGraph::sweep() {
     if (needed.count(asset) != 0) {
       continue;
     }
-    for (auto function = asset->onDeinitialize.rbegin(); function != asset->onDeinitialize.rend(); ++function) {
-      if (const Result<void> done = callFunction(*asset, *function); !done) {
+    // A copy: they may add to it.
+    const std::vector<int> functions(asset->onDeinitialize.rbegin(), asset->onDeinitialize.rend());
+    for (const int function : functions) {
+      if (const Result<void> done = callFunction(*asset, function); !done) {
         log::error("{}", done.error().message());
       }
     }
@@ -267,6 +276,7 @@ void AssetGraph::sweep() {
 void AssetGraph::forget(Asset& asset) {
   lua_State* lua = engine_->state();
   // Functions that other assets kept may still call `asset`: its table goes, so that they get an error and no ghost.
+  // Those of its own functions that were copied out of it look for the asset and get one, too.
   if (asset.table != 0) {
     lua_rawgeti(lua, LUA_REGISTRYINDEX, asset.table);
     lua_pushnil(lua);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -20,6 +21,7 @@ namespace meridian::assets {
 struct Asset {
   enum class State { Loading, Loaded, Initializing, Initialized, Failed };
 
+  std::uint64_t id = 0;  ///< of this one only: a file that is loaded again gets another
   std::filesystem::path file;
   State state = State::Loading;
   bool isRoot = false;
@@ -52,6 +54,8 @@ class AssetGraph {
   /// The file that a path in asset.require means; `from` is null for what no asset requires.
   [[nodiscard]] Result<std::filesystem::path> resolve(std::string_view path, const Asset* from) const;
   [[nodiscard]] Asset* find(const std::filesystem::path& file) const;
+  /// Null once the asset is forgotten.
+  [[nodiscard]] Asset* find(std::uint64_t id) const;
 
   /// Runs the file unless it was run before. Its state says how that went.
   Asset& load(const std::filesystem::path& file, bool enabled);
@@ -79,7 +83,8 @@ class AssetGraph {
 
   scripting::ScriptEngine* engine_;
   PathTokens* tokens_;
-  std::vector<std::unique_ptr<Asset>> assets_;  ///< in the order of loading
+  std::vector<std::unique_ptr<Asset>> assets_;  ///< in the order of loading, which is that of their ids
+  std::uint64_t lastId_ = 0;
   std::map<std::filesystem::path, Asset*> byFile_;
   std::vector<Asset*> initialized_;  ///< in that order
   std::vector<Asset*> running_;      ///< whose code runs, the outermost first

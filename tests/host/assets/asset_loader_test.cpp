@@ -325,6 +325,45 @@ TEST_F(AssetLoaderTest, ScriptsReloadAssetsAndAskWhoRequiresThem) {
   ASSERT_TRUE(engine_.run("openspace.asset.removeAll() assert(#openspace.asset.allAssets() == 0)", "test"));
 }
 
+TEST_F(AssetLoaderTest, FunctionsThatOutliveTheirAssetSaySo) {
+  folder_.write("a.asset",
+                "local resource, deinitialize, require = asset.resource, asset.onDeinitialize, asset.require\n"
+                "function helper() return resource('x') end\n"
+                "function late() deinitialize(function() openspace.note('ghost') end) end\n"
+                "function more() return require('./b') end");
+  folder_.write("b.asset", "openspace.note('b')");
+  ASSERT_TRUE(loader_.add("a"));
+  ASSERT_TRUE(engine_.run("openspace.note(helper())", "test"));
+  EXPECT_EQ(notes_, (folder_.path() / "x").string() + ' ');
+  notes_.clear();
+  ASSERT_TRUE(engine_.run("old = { helper, late, more }", "test"));
+  const auto refuseAll = [&] {
+    for (const char* call : {"old[1]()", "old[2]()", "old[3]()"}) {
+      const Result<void> done = engine_.run(call, "test");
+      ASSERT_FALSE(done) << call;
+      EXPECT_NE(done.error().message().find((folder_.path() / "a.asset").string() + ":"), std::string::npos);
+      EXPECT_NE(done.error().what.find("was removed"), std::string::npos) << done.error().message();
+    }
+  };
+  ASSERT_TRUE(engine_.run("openspace.asset.reload('a')", "test"));
+  refuseAll();
+  EXPECT_TRUE(engine_.run("helper()", "test")) << "that of the asset which is there now";
+  ASSERT_TRUE(loader_.remove("a"));
+  refuseAll();
+  EXPECT_EQ(notes_, "");
+}
+
+TEST_F(AssetLoaderTest, AnAssetThatGoesMayStillSayWhatToDoWhenItGoes) {
+  folder_.write("a.asset",
+                "asset.onDeinitialize(function()\n"
+                "for i = 1, 50 do asset.onDeinitialize(function() openspace.note('too late') end) end\n"
+                "openspace.note('gone') end)\n"
+                "asset.onDeinitialize(function() asset.onDeinitialize(function() end) end)");
+  ASSERT_TRUE(loader_.add("a"));
+  ASSERT_TRUE(loader_.remove("a"));
+  EXPECT_EQ(notes_, "gone ");
+}
+
 TEST_F(AssetLoaderTest, FindsTheAssetsFolder) {
   const auto file = folder_.write("assets/earth/globe.asset", "");
   EXPECT_EQ(assetsFolder(file, "/else"), folder_.path() / "assets");
