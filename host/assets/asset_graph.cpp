@@ -228,6 +228,17 @@ void AssetGraph::noteMissing(const fs::path& path) {
   }
 }
 
+void AssetGraph::noteNode(const std::string& identifier) {
+  if (running_.empty()) {
+    return;
+  }
+  // Whoever had one of that name has lost it.
+  for (const auto& asset : assets_) {
+    std::erase(asset->nodes, identifier);
+  }
+  running_.back()->nodes.push_back(identifier);
+}
+
 void AssetGraph::fail(Asset& asset, Error error) {
   asset.state = Asset::State::Failed;
   // The first cause goes on to those that require this one, rather than a chain that grows with each of them.
@@ -252,15 +263,13 @@ void AssetGraph::sweep() {
   }
   const std::vector<Asset*> order(initialized_.rbegin(), initialized_.rend());
   for (Asset* asset : order) {
-    if (needed.count(asset) != 0) {
-      continue;
+    if (needed.count(asset) == 0) {
+      deinitialize(*asset);
     }
-    // A copy: they may add to it.
-    const std::vector<int> functions(asset->onDeinitialize.rbegin(), asset->onDeinitialize.rend());
-    for (const int function : functions) {
-      if (const Result<void> done = callFunction(*asset, function); !done) {
-        log::error("{}", done.error().message());
-      }
+  }
+  for (const auto& asset : assets_) {
+    if (needed.count(asset.get()) == 0 && asset->state != Asset::State::Initialized) {
+      removeNodes(*asset);
     }
   }
   std::erase_if(initialized_, [&](const Asset* asset) { return needed.count(asset) == 0; });
@@ -271,6 +280,25 @@ void AssetGraph::sweep() {
     forget(*asset);
     return true;
   });
+}
+
+void AssetGraph::deinitialize(Asset& asset) {
+  // A copy: they may add to it.
+  const std::vector<int> functions(asset.onDeinitialize.rbegin(), asset.onDeinitialize.rend());
+  for (const int function : functions) {
+    if (const Result<void> done = callFunction(asset, function); !done) {
+      log::error("{}", done.error().message());
+    }
+  }
+}
+
+/// Its onDeinitialize cannot do that: it would stop at the first thing that was never added, or take away one of the
+/// same name that is another asset's and in whose way this one failed.
+void AssetGraph::removeNodes(Asset& asset) {
+  for (auto node = asset.nodes.rbegin(); node != asset.nodes.rend(); ++node) {
+    removeNode_(*node);
+  }
+  asset.nodes.clear();
 }
 
 void AssetGraph::forget(Asset& asset) {
