@@ -392,6 +392,11 @@ TEST_F(RecordingScripts, WritesOverNothingUnlessAsked) {
   EXPECT_THAT(run("stopRecording('/else', 'Ascii')"), HasSubstr("not there"));
   EXPECT_EQ(run("stopRecording('there', 'Binary', true)"), "");
   EXPECT_TRUE(readSessionRecording(folder_ / "there"));
+  EXPECT_EQ(run("startRecording()"), "");
+  recordTwoSeconds();
+  std::filesystem::create_directories(folder_ / "folder");
+  EXPECT_THAT(run("stopRecording('folder', 'Ascii', true)"), HasSubstr("progress/session.osrectxt"));
+  EXPECT_TRUE(readSessionRecording(folder_ / "progress/session.osrectxt")) << "nothing is lost";
   EXPECT_THAT(run("startPlayback('missing')"), HasSubstr("no such file"));
   EXPECT_THAT(run("startPlayback(3)"), HasSubstr("must be a string"));
 }
