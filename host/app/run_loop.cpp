@@ -48,7 +48,8 @@ bool RunLoop::isDone() const {
   }
   const bool watched = parts_.window != nullptr && parts_.writer == nullptr;
   if (options_.play) {
-    return parts_.session.hasPlayed() && !watched;
+    // At its end, or stopped by one of its own scripts.
+    return frames_ >= 1 && !parts_.session.isPlaying() && !watched;
   }
   return parts_.window == nullptr && !options_.frames && frames_ >= 1;
 }

@@ -33,7 +33,7 @@ class Session {
   [[nodiscard]] double deltaSeconds() const { return deltaSeconds_; }
   /// Frame seconds since the start.
   [[nodiscard]] double wallSeconds() const { return timer_.total(); }
-  [[nodiscard]] bool hasPlayed() const { return application_.recording().hasPlayed(); }
+  [[nodiscard]] bool isPlaying() const { return application_.recording().isPlaying(); }
 
  private:
   Session(Application& application, scripting::FrameTimer timer) : application_(application), timer_(timer) {}

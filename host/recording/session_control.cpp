@@ -66,7 +66,6 @@ Result<void> SessionControl::startPlayback(const std::filesystem::path& file, bo
   }
   player_.emplace(std::move(*player));
   loop_ = loops ? std::optional(std::move(*recording)) : std::nullopt;
-  hasPlayed_ = false;
   paused_ = false;
   if (!keepsTime) {
     clock_.setTime(player_->startTime());
@@ -122,8 +121,6 @@ void SessionControl::play(double seconds) {
     player_.reset();
   } else if (player_->finished() && loop_) {
     rewind();
-  } else {
-    hasPlayed_ = player_->finished();
   }
 }
 
