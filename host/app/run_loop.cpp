@@ -164,11 +164,7 @@ Result<void> RunLoop::writePicture() {
     return {};
   }
   const graphics::RenderTarget& target = parts_.renderer.target();
-  graphics::Image picture{target.size(), target.readPixels(), {}};
-  if (const std::string& attribution = parts_.renderer.attribution(); !attribution.empty()) {
-    picture.metadata["Copyright"] = attribution;
-  }
-  return parts_.writer->write(std::move(picture));
+  return parts_.writer->write({target.size(), target.readPixels(), {}}, parts_.renderer.attributions());
 }
 
 void RunLoop::tellProgress() {
