@@ -36,7 +36,8 @@ class RunLoop {
   };
   RunLoop(const Options& options, const Parts& parts) : options_(options), parts_(parts) {}
 
-  /// Errors: a frame cannot be drawn, written or recorded; interrupted before an end that was asked for.
+  /// Errors: a frame cannot be drawn, written or, with --record, recorded; interrupted before an end that was asked
+  /// for.
   [[nodiscard]] Result<void> run();
   /// To be called from within run, by input.
   void quit() { quit_ = true; }

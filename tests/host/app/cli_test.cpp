@@ -304,6 +304,21 @@ TEST_F(CommandLine, ARecordingThatStopsItselfEndsTheRun) {
   EXPECT_FALSE(fs::exists(in("frames/frame_000004.png")));
 }
 
+TEST_F(CommandLine, AFullDiskEndsTheRunOnlyWithRecord) {
+  emptyScene();
+  write("record.lua", "openspace.sessionRecording.startRecording()");
+  // No file gets longer than a few KiB, as on a disk that is full.
+  write("full.sh", "trap '' XFSZ\nulimit -f 8\n\"$@\"\n");
+  const std::string frames = "empty.asset --headless --size 8x8 --fps 10 --frames 200 ";
+  const Outcome scripted = run(frames + "--script record.lua", "sh full.sh");
+  EXPECT_EQ(scripted.code, 0) << scripted.errors;
+  EXPECT_THAT(scripted.errors, HasSubstr("the recording ends here"));
+  EXPECT_THAT(scripted.errors, HasSubstr("make room on the disk"));
+  const Outcome asked = run(frames + "--record session.osrectxt", "sh full.sh");
+  EXPECT_EQ(asked.code, 1);
+  EXPECT_THAT(asked.errors, HasSubstr("make room on the disk"));
+}
+
 TEST_F(CommandLine, AnInterruptedRunClosesItsOutput) {
   emptyScene();
   // Interrupts what it is told to run once that has written some pictures, however long it takes to start.
