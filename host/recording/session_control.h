@@ -45,8 +45,6 @@ class SessionControl {
 
  private:
   [[nodiscard]] Result<void> requireIdle() const;
-  [[nodiscard]] Result<Player> playerOf(const SessionRecording& recording);
-  void rewind();
 
   navigation::Camera& camera_;
   scripting::Clock& clock_;
@@ -54,7 +52,7 @@ class SessionControl {
   std::optional<Recorder> recorder_;
   std::filesystem::path recordingFile_;
   std::optional<Player> player_;
-  std::optional<SessionRecording> loop_;  ///< what is played again at its end
+  bool loops_ = false;  ///< it is played again at its end
   bool isInPlay_ = false;
   bool wantsStop_ = false;
   bool paused_ = false;

@@ -14,6 +14,7 @@
 #include "host/recording/recording_scripts.h"
 #include "host/recording/session_recording.h"
 #include "smooth_ground.h"
+#include "support/allocation_count.h"
 
 namespace meridian::recording {
 
@@ -378,6 +379,40 @@ TEST_F(RecordingScripts, LoopsUntilItIsStoppedEvenByItsOwnScript) {
   frame(3.0);
   EXPECT_FALSE(is("isPlayingBack"));
   EXPECT_EQ(engine_.evaluate("rounds", "test.lua").value().front(), Value(2));
+}
+
+TEST_F(RecordingScripts, LoopsWithoutTheNodeThatItBeginsAt) {
+  EXPECT_TRUE(scene_.addNode(staticNode("B", {1e11, 0, 0}, {0, 0, 0}), "test", "/"));
+  SessionRecording recording;
+  recording.entries = {cameraAt(0.0, {0, 0, 1e7}, "B"), cameraAt(1.0, {100, 0, 1e7}, "A"),
+                       cameraAt(2.0, {200, 0, 1e7}, "A")};
+  std::filesystem::create_directories(folder_);
+  ASSERT_TRUE(writeSessionRecording(recording, folder_ / "loop"));
+  EXPECT_EQ(run("startPlayback('loop', true)"), "");
+  frame(2.0);
+  ASSERT_TRUE(scene_.removeNode("B"));
+  frame(2.0);
+  EXPECT_TRUE(is("isPlayingBack"));
+  frame(1.5);
+  EXPECT_NEAR(x(), 150.0, 1e-6);
+}
+
+TEST_F(RecordingScripts, ALoopBeginsAnewWithoutACopyOfTheRecording) {
+  SessionRecording recording;
+  for (int i = 0; i <= 1000; ++i) {
+    recording.entries.emplace_back(cameraAt(0.01 * i, {0, 0, 1e7}, "A"));
+    recording.entries.emplace_back(ScriptEntry{0.01 * i, Time(), "-- a script too long for a string without a heap"});
+  }
+  std::filesystem::create_directories(folder_);
+  ASSERT_TRUE(writeSessionRecording(recording, folder_ / "loop"));
+  EXPECT_EQ(run("startPlayback('loop', true)"), "");
+  frame(20.0);  // runs all scripts, and begins anew
+  EXPECT_TRUE(is("isPlayingBack"));
+  frame(9.995);
+  const std::size_t before = allocationsOfThisThread();
+  frame(0.1);
+  EXPECT_TRUE(is("isPlayingBack"));
+  EXPECT_LT(allocationsOfThisThread() - before, 500U);
 }
 
 TEST_F(RecordingScripts, WritesOverNothingUnlessAsked) {
