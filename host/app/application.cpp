@@ -189,7 +189,7 @@ Result<Value> Application::readLuaData(const std::filesystem::path& file) const 
 
 Result<void> Application::addSceneGraphNode(const Value& table) {
   const ScriptPlace place = scriptPlace();
-  return addNode(table, place.where, place.folder);
+  return addNode(table, place.where, place.folder).map([&] { assetLoader_.noteNode(table); });
 }
 
 Result<void> Application::addNode(const Value& table, const std::string& where, const std::string& folder) {

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "host/api/log.h"
 #include "host/app/video_encoder.h"
@@ -20,24 +21,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct Picture {
+  graphics::Image image;
+  std::vector<std::string> credits;
+};
+
 /// Where pictures end up. Used on the writer's thread only, after it was made.
 class Sink {
  public:
   virtual ~Sink() = default;
-  virtual Result<void> add(graphics::Image picture) = 0;
+  virtual Result<void> add(Picture picture) = 0;
   virtual Result<void> finish() = 0;
 };
 
-Result<void> writePicture(const fs::path& file, const graphics::Image& picture) {
+Result<void> writePicture(const fs::path& file, const Picture& picture) {
   graphics::PngOptions options;
-  options.metadata = picture.metadata;
-  return graphics::writePng(file, picture.pixels, picture.size, options);
+  options.metadata = picture.image.metadata;
+  if (!picture.credits.empty()) {
+    options.metadata["Copyright"] = fmt::format("{}", fmt::join(picture.credits, " | "));
+  }
+  return graphics::writePng(file, picture.image.pixels, picture.image.size, options);
 }
 
 class PictureSink final : public Sink {
  public:
   explicit PictureSink(fs::path file) : file_(std::move(file)) {}
-  Result<void> add(graphics::Image picture) override {
+  Result<void> add(Picture picture) override {
     last_ = std::move(picture);
     return {};
   }
@@ -45,13 +54,13 @@ class PictureSink final : public Sink {
 
  private:
   fs::path file_;
-  std::optional<graphics::Image> last_;
+  std::optional<Picture> last_;
 };
 
 class FolderSink final : public Sink {
  public:
   explicit FolderSink(fs::path folder) : folder_(std::move(folder)) {}
-  Result<void> add(graphics::Image picture) override {
+  Result<void> add(Picture picture) override {
     return writePicture(folder_ / fmt::format("frame_{:06}.png", count_++), picture);
   }
   Result<void> finish() override { return {}; }
@@ -64,7 +73,7 @@ class FolderSink final : public Sink {
 class VideoSink final : public Sink {
  public:
   explicit VideoSink(std::unique_ptr<VideoEncoder> encoder) : encoder_(std::move(encoder)) {}
-  Result<void> add(graphics::Image picture) override { return encoder_->add(picture); }
+  Result<void> add(Picture picture) override { return encoder_->add(picture.image, picture.credits); }
   Result<void> finish() override { return encoder_->finish(); }
 
  private:
@@ -85,7 +94,7 @@ class QueuedWriter final : public FrameWriter {
     }
   }
 
-  Result<void> write(graphics::Image picture) override {
+  Result<void> write(graphics::Image picture, std::vector<std::string> credits) override {
     assert(picture.size == size_);
     assert(picture.pixels.size() == 4 * static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y));
     std::unique_lock lock(mutex_);
@@ -94,7 +103,7 @@ class QueuedWriter final : public FrameWriter {
     if (error_) {
       return tl::make_unexpected(*error_);
     }
-    queue_.push_back(std::move(picture));
+    queue_.push_back({std::move(picture), std::move(credits)});
     changed_.notify_all();
     return {};
   }
@@ -112,13 +121,13 @@ class QueuedWriter final : public FrameWriter {
   }
 
  private:
-  std::optional<graphics::Image> next() {
+  std::optional<Picture> next() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return !queue_.empty() || ended_; });
     if (queue_.empty()) {
       return std::nullopt;
     }
-    graphics::Image picture = std::move(queue_.front());
+    Picture picture = std::move(queue_.front());
     queue_.pop_front();
     changed_.notify_all();
     return picture;
@@ -151,7 +160,7 @@ class QueuedWriter final : public FrameWriter {
   [[maybe_unused]] glm::ivec2 size_;  ///< for assertions
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<graphics::Image> queue_;
+  std::deque<Picture> queue_;
   std::optional<Error> error_;
   bool ended_ = false;
   std::thread thread_;

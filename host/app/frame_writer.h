@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <glm/vec2.hpp>
 
@@ -15,8 +17,8 @@ namespace meridian::app {
 ///
 /// What it writes follows from the path: NAME.png gets the last picture; NAME.mp4, .mkv, .webm or .mov becomes a video
 /// (H.264 or MPEG-4; VP9 or VP8 in .webm); a name without extension, or a folder that is there, becomes a folder of
-/// frame_000000.png, frame_000001.png ... A picture's metadata go into its file; of a video's, "Copyright" goes into
-/// the container, as VideoEncoder says.
+/// frame_000000.png, frame_000001.png ... A picture's metadata and credits ("Copyright") go into its file; the credits
+/// of a video's go into the container, as VideoEncoder says.
 class FrameWriter {
  public:
   enum class Kind { Picture, Folder, Video };
@@ -32,9 +34,9 @@ class FrameWriter {
   /// Closes; an error is then only logged.
   virtual ~FrameWriter() = default;
 
-  /// Hands over the next picture, of the size that open was told. Errors: the first thing that went wrong with this or
-  /// any picture before it, and from then on the same again.
-  [[nodiscard]] virtual Result<void> write(graphics::Image picture) = 0;
+  /// Hands over the next picture, of the size that open was told, and whom what it shows is to be credited to. Errors:
+  /// the first thing that went wrong with this or any picture before it, and from then on the same again.
+  [[nodiscard]] virtual Result<void> write(graphics::Image picture, std::vector<std::string> credits) = 0;
   /// Waits until all is on disk and ends the video. Errors as for write. Closing twice does nothing more.
   [[nodiscard]] virtual Result<void> close() = 0;
 };

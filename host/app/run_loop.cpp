@@ -48,7 +48,8 @@ bool RunLoop::isDone() const {
   }
   const bool watched = parts_.window != nullptr && parts_.writer == nullptr;
   if (options_.play) {
-    return parts_.session.hasPlayed() && !watched;
+    // At its end, or stopped by one of its own scripts.
+    return frames_ >= 1 && !parts_.session.isPlaying() && !watched;
   }
   return parts_.window == nullptr && !options_.frames && frames_ >= 1;
 }
@@ -163,11 +164,7 @@ Result<void> RunLoop::writePicture() {
     return {};
   }
   const graphics::RenderTarget& target = parts_.renderer.target();
-  graphics::Image picture{target.size(), target.readPixels(), {}};
-  if (const std::string& attribution = parts_.renderer.attribution(); !attribution.empty()) {
-    picture.metadata["Copyright"] = attribution;
-  }
-  return parts_.writer->write(std::move(picture));
+  return parts_.writer->write({target.size(), target.readPixels(), {}}, parts_.renderer.attributions());
 }
 
 void RunLoop::tellProgress() {

@@ -22,7 +22,7 @@ namespace meridian::app {
 /// passed; only its last drawing counts in the figures.
 ///
 /// Ends after --frames; when the window is closed; when interrupted; without a window or with --output also when the
-/// recording has been played, and without a window, --frames and --play after one frame.
+/// recording has been played or was stopped, and without a window, --frames and --play after one frame.
 class RunLoop {
  public:
   /// All outlive the loop; window, panels and writer may be null (no panels without a window).
@@ -36,7 +36,8 @@ class RunLoop {
   };
   RunLoop(const Options& options, const Parts& parts) : options_(options), parts_(parts) {}
 
-  /// Errors: a frame cannot be drawn, written or recorded; interrupted before an end that was asked for.
+  /// Errors: a frame cannot be drawn, written or, with --record, recorded; interrupted before an end that was asked
+  /// for.
   [[nodiscard]] Result<void> run();
   /// To be called from within run, by input.
   void quit() { quit_ = true; }

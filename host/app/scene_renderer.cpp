@@ -114,15 +114,18 @@ Result<void> SceneRenderer::draw(const Moment& moment, const navigation::Camera&
 }
 
 void SceneRenderer::gatherAttributions() {
-  attributions_.clear();
+  // All three keep their memory.
+  gathered_.clear();
   for (const Item* item : order_) {
-    item->renderable->addAttributions(attributions_);
+    item->renderable->addAttributions(gathered_);
   }
-  attribution_.clear();  // both keep their memory
-  for (const std::string_view text : attributions_) {
-    attribution_.append(attribution_.empty() ? "" : " | ").append(text);
+  attributions_.resize(gathered_.size());
+  attribution_.clear();
+  for (std::size_t i = 0; i < gathered_.size(); ++i) {
+    attributions_[i] = gathered_[i];
+    attribution_.append(attribution_.empty() ? "" : " | ").append(gathered_[i]);
   }
-  attributions_.clear();
+  gathered_.clear();
 }
 
 void SceneRenderer::drawItems(const FrameContext& frame) {

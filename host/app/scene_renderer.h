@@ -66,7 +66,9 @@ class SceneRenderer {
   /// Whether every globe's view is what it will be; if not, the first that is not says why. Of the frame drawn last.
   [[nodiscard]] Settled settled() const;
 
-  /// Whom the data are to be credited to that the frame drawn last shows, parted by " | "; empty: nobody.
+  /// Whom the data are to be credited to that the frame drawn last shows.
+  [[nodiscard]] const std::vector<std::string>& attributions() const { return attributions_; }
+  /// The same, parted by " | "; empty: nobody.
   [[nodiscard]] const std::string& attribution() const { return attribution_; }
 
   [[nodiscard]] const graphics::RenderTarget& target() const { return target_; }
@@ -97,7 +99,8 @@ class SceneRenderer {
   graphics::GpuTimer timer_;
   std::vector<Item> items_;
   std::vector<Item*> order_;
-  std::vector<std::string_view> attributions_;
+  std::vector<std::string_view> gathered_;  ///< good only until the next update
+  std::vector<std::string> attributions_;
   std::string attribution_;
   std::size_t nodesSeen_ = 0;
   unsigned structureSeen_ = 0;

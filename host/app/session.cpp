@@ -9,7 +9,7 @@ namespace meridian::app {
 Result<std::unique_ptr<Session>> Session::create(Application& application, const Options& options, bool fixedStep) {
   const auto timer = fixedStep ? scripting::FrameTimer::fixedStep(options.fps.value_or(Options::defaultFps))
                                : scripting::FrameTimer::realTime();
-  std::unique_ptr<Session> session(new Session(application, timer));
+  std::unique_ptr<Session> session(new Session(application, options, timer));
   recording::SessionControl& control = application.recording();
   if (options.play) {
     if (auto started = control.startPlayback(*options.play, false, options.time.has_value()); !started) {
@@ -42,7 +42,18 @@ Result<void> Session::advance() {
     application_.flight().advance(seconds);
     application_.navigator().update(seconds);
   }
-  return control.record(seconds);
+  return record(seconds);
+}
+
+Result<void> Session::record(double seconds) {
+  recording::SessionControl& control = application_.recording();
+  Result<void> recorded = control.record(seconds);
+  if (recorded || control.recordingFile() == asked_) {
+    return recorded;
+  }
+  log::error("the recording ends here: {}", recorded.error().message());
+  static_cast<void>(control.stopRecording());  // fails for the same reason
+  return {};
 }
 
 bool Session::keepClear() {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "host/api/error.h"
 #include "host/app/application.h"
@@ -22,7 +24,8 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// One frame later: scripts, clock, animations, scene transforms, camera, in this order. The first frame is at the
-  /// start. Errors: the recording cannot be written any more.
+  /// start. Errors: what `--record` names cannot be written any more; a recording that a script began ends then, and
+  /// nothing else does.
   [[nodiscard]] Result<void> advance();
   /// Lifts a camera that no recording moves out of terrain that was loaded since `advance`. Whether that moved it.
   bool keepClear();
@@ -33,12 +36,15 @@ class Session {
   [[nodiscard]] double deltaSeconds() const { return deltaSeconds_; }
   /// Frame seconds since the start.
   [[nodiscard]] double wallSeconds() const { return timer_.total(); }
-  [[nodiscard]] bool hasPlayed() const { return application_.recording().hasPlayed(); }
+  [[nodiscard]] bool isPlaying() const { return application_.recording().isPlaying(); }
 
  private:
-  Session(Application& application, scripting::FrameTimer timer) : application_(application), timer_(timer) {}
+  Session(Application& application, const Options& options, scripting::FrameTimer timer)
+      : application_(application), asked_(options.record), timer_(timer) {}
+  [[nodiscard]] Result<void> record(double seconds);
 
   Application& application_;
+  std::optional<std::filesystem::path> asked_;  ///< the recording of `--record`
   scripting::FrameTimer timer_;
   double deltaSeconds_ = 0.0;
   bool isPlayed_ = false;  ///< a recording moved the camera in this frame

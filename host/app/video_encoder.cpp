@@ -3,7 +3,6 @@
 #include <array>
 #include <cassert>
 #include <set>
-#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -83,7 +82,7 @@ struct VideoEncoder::Implementation {
   std::unique_ptr<AVPacket, Freed<av_packet_free>> packet;
   std::unique_ptr<SwsContext, ScalerFreer> scaler;
   AVStream* stream = nullptr;
-  std::set<std::string> copyrights;
+  std::set<std::string> credits;  ///< of all pictures until now
   bool hasHeader = false;
 
   [[nodiscard]] tl::unexpected<Error> error(int code) const {
@@ -138,10 +137,11 @@ struct VideoEncoder::Implementation {
     return code < 0 ? error(code) : Result<void>{};
   }
 
-  void credit(const graphics::Image& picture) {
-    const auto found = picture.metadata.find("Copyright");
-    if (found != picture.metadata.end() && copyrights.insert(found->second).second) {
-      const std::string all = fmt::format("{}", fmt::join(copyrights, " | "));
+  void credit(std::span<const std::string> more) {
+    const std::size_t before = credits.size();
+    credits.insert(more.begin(), more.end());
+    if (credits.size() > before) {
+      const std::string all = fmt::format("{}", fmt::join(credits, " | "));
       av_dict_set(&format->metadata, "copyright", all.c_str(), 0);
     }
   }
@@ -220,10 +220,10 @@ Result<std::unique_ptr<VideoEncoder>> VideoEncoder::open(const std::filesystem::
   return std::unique_ptr<VideoEncoder>(new VideoEncoder(std::move(state)));
 }
 
-Result<void> VideoEncoder::add(const graphics::Image& picture) {
+Result<void> VideoEncoder::add(const graphics::Image& picture, std::span<const std::string> credits) {
   Implementation& state = *implementation_;
   assert(picture.size.x >= state.codec->width && picture.size.y >= state.codec->height);
-  state.credit(picture);
+  state.credit(credits);
   if (!state.hasHeader) {
     if (auto written = state.writeHeader(); !written) {
       return written;

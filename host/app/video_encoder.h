@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
+#include <string>
 
 #include <glm/vec2.hpp>
 
@@ -22,9 +24,9 @@ class VideoEncoder {
   /// Without finish the file is left as it is: cut off.
   ~VideoEncoder();
 
-  /// The "Copyright" in the pictures' metadata becomes the container's: of all pictures in .mp4 and .mov, which have it
-  /// at their end; of the first one in .mkv and .webm.
-  [[nodiscard]] Result<void> add(const graphics::Image& picture);
+  /// `credits`, whom the picture is to be credited to, become the container's "copyright", each of them once: those of
+  /// all pictures in .mp4 and .mov, which have it at their end; of the first one in .mkv and .webm.
+  [[nodiscard]] Result<void> add(const graphics::Image& picture, std::span<const std::string> credits = {});
   /// Flushes the encoder and writes the index; to be called once, at the end.
   [[nodiscard]] Result<void> finish();
 

@@ -108,11 +108,18 @@ Asset* AssetGraph::find(const fs::path& file) const {
   return found == byFile_.end() ? nullptr : found->second;
 }
 
+Asset* AssetGraph::find(std::uint64_t id) const {
+  const auto found = std::lower_bound(assets_.begin(), assets_.end(), id,
+                                      [](const auto& asset, std::uint64_t sought) { return asset->id < sought; });
+  return found == assets_.end() || (*found)->id != id ? nullptr : found->get();
+}
+
 Asset& AssetGraph::load(const fs::path& file, bool enabled) {
   if (Asset* known = find(file)) {
     return *known;
   }
   Asset& asset = *assets_.emplace_back(std::make_unique<Asset>());
+  asset.id = ++lastId_;
   asset.file = file;
   byFile_.emplace(file, &asset);
   if (Result<void> done = runFile(asset, enabled); !done) {
@@ -221,6 +228,17 @@ void AssetGraph::noteMissing(const fs::path& path) {
   }
 }
 
+void AssetGraph::noteNode(const std::string& identifier) {
+  if (running_.empty()) {
+    return;
+  }
+  // Whoever had one of that name has lost it.
+  for (const auto& asset : assets_) {
+    std::erase(asset->nodes, identifier);
+  }
+  running_.back()->nodes.push_back(identifier);
+}
+
 void AssetGraph::fail(Asset& asset, Error error) {
   asset.state = Asset::State::Failed;
   // The first cause goes on to those that require this one, rather than a chain that grows with each of them.
@@ -245,13 +263,13 @@ void AssetGraph::sweep() {
   }
   const std::vector<Asset*> order(initialized_.rbegin(), initialized_.rend());
   for (Asset* asset : order) {
-    if (needed.count(asset) != 0) {
-      continue;
+    if (needed.count(asset) == 0) {
+      deinitialize(*asset);
     }
-    for (auto function = asset->onDeinitialize.rbegin(); function != asset->onDeinitialize.rend(); ++function) {
-      if (const Result<void> done = callFunction(*asset, *function); !done) {
-        log::error("{}", done.error().message());
-      }
+  }
+  for (const auto& asset : assets_) {
+    if (needed.count(asset.get()) == 0 && asset->state != Asset::State::Initialized) {
+      removeNodes(*asset);
     }
   }
   std::erase_if(initialized_, [&](const Asset* asset) { return needed.count(asset) == 0; });
@@ -264,9 +282,29 @@ void AssetGraph::sweep() {
   });
 }
 
+void AssetGraph::deinitialize(Asset& asset) {
+  // A copy: they may add to it.
+  const std::vector<int> functions(asset.onDeinitialize.rbegin(), asset.onDeinitialize.rend());
+  for (const int function : functions) {
+    if (const Result<void> done = callFunction(asset, function); !done) {
+      log::error("{}", done.error().message());
+    }
+  }
+}
+
+/// Its onDeinitialize cannot do that: it would stop at the first thing that was never added, or take away one of the
+/// same name that is another asset's and in whose way this one failed.
+void AssetGraph::removeNodes(Asset& asset) {
+  for (auto node = asset.nodes.rbegin(); node != asset.nodes.rend(); ++node) {
+    removeNode_(*node);
+  }
+  asset.nodes.clear();
+}
+
 void AssetGraph::forget(Asset& asset) {
   lua_State* lua = engine_->state();
   // Functions that other assets kept may still call `asset`: its table goes, so that they get an error and no ghost.
+  // Those of its own functions that were copied out of it look for the asset and get one, too.
   if (asset.table != 0) {
     lua_rawgeti(lua, LUA_REGISTRYINDEX, asset.table);
     lua_pushnil(lua);

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "host/api/error.h"
@@ -20,6 +23,7 @@ namespace meridian::assets {
 struct Asset {
   enum class State { Loading, Loaded, Initializing, Initialized, Failed };
 
+  std::uint64_t id = 0;  ///< of this one only: a file that is loaded again gets another
   std::filesystem::path file;
   State state = State::Loading;
   bool isRoot = false;
@@ -32,6 +36,7 @@ struct Asset {
   int exports = 0;  ///< what asset.require gives
   std::vector<int> onInitialize;
   std::vector<int> onDeinitialize;
+  std::vector<std::string> nodes;  ///< that its code added, in that order
 
   /// It failed for want of data that were not synchronised. Those that require it go on without.
   [[nodiscard]] bool isUnavailable() const { return state == State::Failed && !missing.empty(); }
@@ -40,7 +45,11 @@ struct Asset {
 /// The assets, who requires whom, and the order in which they come and go.
 class AssetGraph {
  public:
-  AssetGraph(scripting::ScriptEngine& engine, PathTokens& tokens) : engine_(&engine), tokens_(&tokens) {}
+  /// Takes the node away if it is still there.
+  using RemoveNode = std::function<void(const std::string& identifier)>;
+
+  AssetGraph(scripting::ScriptEngine& engine, PathTokens& tokens, RemoveNode removeNode)
+      : engine_(&engine), tokens_(&tokens), removeNode_(std::move(removeNode)) {}
   AssetGraph(const AssetGraph&) = delete;
   AssetGraph& operator=(const AssetGraph&) = delete;
 
@@ -52,6 +61,8 @@ class AssetGraph {
   /// The file that a path in asset.require means; `from` is null for what no asset requires.
   [[nodiscard]] Result<std::filesystem::path> resolve(std::string_view path, const Asset* from) const;
   [[nodiscard]] Asset* find(const std::filesystem::path& file) const;
+  /// Null once the asset is forgotten.
+  [[nodiscard]] Asset* find(std::uint64_t id) const;
 
   /// Runs the file unless it was run before. Its state says how that went.
   Asset& load(const std::filesystem::path& file, bool enabled);
@@ -63,7 +74,11 @@ class AssetGraph {
   /// Data that the running asset would have read were not synchronised.
   void noteMissing(const std::filesystem::path& path);
 
-  /// Deinitialises and forgets all that no root needs any more, those who require before the required.
+  /// The running asset added a node.
+  void noteNode(const std::string& identifier);
+
+  /// Deinitialises and forgets all that no root needs any more, those who require before the required. Those that did
+  /// not come as far as to be initialised lose the nodes that they added.
   void sweep();
 
   /// asset.meta.Name.
@@ -75,11 +90,15 @@ class AssetGraph {
   bool accept(Asset& asset, const Asset& required);
   Result<void> runFile(Asset& asset, bool enabled);
   Result<void> callFunction(Asset& asset, int reference);
+  void deinitialize(Asset& asset);
+  void removeNodes(Asset& asset);
   void forget(Asset& asset);
 
   scripting::ScriptEngine* engine_;
   PathTokens* tokens_;
-  std::vector<std::unique_ptr<Asset>> assets_;  ///< in the order of loading
+  RemoveNode removeNode_;
+  std::vector<std::unique_ptr<Asset>> assets_;  ///< in the order of loading, which is that of their ids
+  std::uint64_t lastId_ = 0;
   std::map<std::filesystem::path, Asset*> byFile_;
   std::vector<Asset*> initialized_;  ///< in that order
   std::vector<Asset*> running_;      ///< whose code runs, the outermost first

@@ -39,7 +39,15 @@ ScriptResult nothing() {
 
 struct AssetLoader::Private {
   Private(scripting::ScriptEngine& engine, PathTokens& pathTokens, AssetTarget& assetTarget)
-      : graph(engine, pathTokens), target(&assetTarget) {}
+      : graph(engine, pathTokens,
+              [&assetTarget](const std::string& identifier) {
+                if (assetTarget.hasNode(identifier)) {
+                  if (const Result<void> done = assetTarget.removeNode(identifier); !done) {
+                    log::error("{}", done.error().message());
+                  }
+                }
+              }),
+        target(&assetTarget) {}
 
   AssetGraph graph;
   AssetTarget* target;
@@ -77,7 +85,10 @@ void AssetLoader::registerNodeFunctions(scripting::ScriptEngine& engine) {
            if (!a[0].isTable()) {
              return failure("argument 1 must be a table");
            }
-           return self->target->addNode(a[0], self->graph.engine().place(), currentFolder()).and_then(nothing);
+           return self->target->addNode(a[0], self->graph.engine().place(), currentFolder()).and_then([&] {
+             noteNode(a[0]);
+             return nothing();
+           });
          }},
         {"removeSceneGraphNode", "identifier or table", "Removes a node and those below it.", 1, 1,
          [self](Arguments a) -> ScriptResult {
@@ -219,6 +230,12 @@ bool AssetLoader::isLoaded(std::string_view path) const {
 
 void AssetLoader::noteMissing(const fs::path& path) {
   private_->graph.noteMissing(path);
+}
+
+void AssetLoader::noteNode(const Value& table) {
+  if (const Value* identifier = table.find("Identifier"); identifier != nullptr && identifier->string() != nullptr) {
+    private_->graph.noteNode(*identifier->string());
+  }
 }
 
 bool AssetLoader::runsAsset() const {

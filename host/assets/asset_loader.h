@@ -48,7 +48,8 @@ class AssetLoader {
   /// Loads and initialises a root asset. `path` is a file of the machine (relative to the working folder), or a path as
   /// in asset.require. Adding it again does nothing. The error is that of the root; reports() has all of them.
   Result<void> add(std::string_view path);
-  /// Runs onDeinitialize of a root asset and of what only it required, parents first; forgets them.
+  /// Runs onDeinitialize of a root asset and of what only it required, parents first; forgets them. Of one that failed
+  /// the nodes that it had added are removed instead.
   Result<void> remove(std::string_view path);
   void removeAll();
 
@@ -59,6 +60,10 @@ class AssetLoader {
   /// Data below ${SYNC} that the asset whose code runs now would have read are not there. Should it fail, it is not
   /// available, and those that require it go on without it.
   void noteMissing(const std::filesystem::path& path);
+
+  /// The code that runs now added a node by another way than `openspace.addSceneGraphNode`. Should its asset fail, the
+  /// node goes with it.
+  void noteNode(const Value& table);
 
   /// Folder of the asset whose code runs now; ${ASSETS} outside of one.
   [[nodiscard]] std::string currentFolder() const;

@@ -1,6 +1,7 @@
 #include "host/assets/asset_table.h"
 
 #include <array>
+#include <cstdint>
 
 #include <fmt/format.h>
 #include <lua.hpp>
@@ -152,11 +153,21 @@ Result<int> onDeinitialize(const Call& call) {
   return keepFunction(call, call.asset.onDeinitialize);
 }
 
+/// Lua code may have kept a function of `asset` for longer than the graph kept its asset.
+Result<int> callIfThere(lua_State* lua, AssetGraph& graph, Function body) {
+  Asset* const asset = graph.find(static_cast<std::uint64_t>(lua_tointeger(lua, lua_upvalueindex(2))));
+  if (asset == nullptr) {
+    return failure(
+        fmt::format("the asset {} that this function belongs to was removed", lua_tostring(lua, lua_upvalueindex(3))),
+        {}, "ask `asset` again where the asset is loaded");
+  }
+  return body({lua, graph, *asset});
+}
+
 template <Function Body>
 int bound(lua_State* lua) {
   auto& graph = *static_cast<AssetGraph*>(lua_touserdata(lua, lua_upvalueindex(1)));
-  auto& asset = *static_cast<Asset*>(lua_touserdata(lua, lua_upvalueindex(2)));
-  const Result<int> results = Body({lua, graph, asset});
+  const Result<int> results = callIfThere(lua, graph, Body);
   if (results) {
     return *results;
   }
@@ -191,15 +202,17 @@ void makeAssetTable(lua_State* lua, AssetGraph& graph, Asset& asset, bool enable
                                                       {"export", bound<exportValue>},
                                                       {"onInitialize", bound<onInitialize>},
                                                       {"onDeinitialize", bound<onDeinitialize>}}};
+  const std::string file = asset.file.string();
   lua_newtable(lua);
   for (const luaL_Reg& function : functions) {
     lua_pushlightuserdata(lua, &graph);
-    lua_pushlightuserdata(lua, &asset);
-    lua_pushcclosure(lua, function.func, 2);
+    lua_pushinteger(lua, static_cast<lua_Integer>(asset.id));
+    lua_pushlstring(lua, file.data(), file.size());
+    lua_pushcclosure(lua, function.func, 3);
     lua_setfield(lua, -2, function.name);
   }
   setText(lua, "directory", asset.file.parent_path().string());
-  setText(lua, "filePath", asset.file.string());
+  setText(lua, "filePath", file);
   lua_pushboolean(lua, enabled ? 1 : 0);
   lua_setfield(lua, -2, "enabled");
   lua_createtable(lua, 0, 1);

@@ -67,6 +67,11 @@ void Player::advance(double seconds) {
   placeCamera();
 }
 
+void Player::restart() {
+  elapsed_ = 0.0;
+  nextScript_ = 0;
+}
+
 void Player::runDueScripts() {
   for (; nextScript_ < recording_.entries.size(); ++nextScript_) {
     const SessionRecording::Entry& entry = recording_.entries[nextScript_];

@@ -22,7 +22,7 @@ class Player {
   [[nodiscard]] static Result<Player> create(SessionRecording recording, navigation::Camera& camera,
                                              RunScript runScript);
 
-  /// To be set once, before the first advance: the first camera entry's.
+  /// To be set before the first advance, also after a restart: the first camera entry's.
   [[nodiscard]] Time startTime() const { return startTime_; }
   [[nodiscard]] double duration() const { return recording_.duration(); }
   [[nodiscard]] double elapsed() const { return elapsed_; }
@@ -31,6 +31,8 @@ class Player {
   /// `seconds` later, at least 0. Runs what is due, then places the camera at the scene's present time: call it after
   /// Scene::evaluate, and with 0 before the first frame.
   void advance(double seconds);
+  /// Back to before the first advance. The camera stays where it is until the next.
+  void restart();
 
  private:
   Player(SessionRecording recording, navigation::Camera& camera, RunScript runScript);

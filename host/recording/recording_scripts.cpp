@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "host/api/log.h"
+#include "host/recording/move_file.h"
 
 namespace meridian::recording {
 
@@ -43,18 +44,6 @@ Result<void> startRecording(SessionControl& control, const RecordingPaths& paths
   return file.and_then([&](const fs::path& whole) {
     return makeFolderOf(whole).and_then([&] { return control.startRecording(whole); });
   });
-}
-
-Result<void> moveFile(const fs::path& from, const fs::path& to) {
-  std::error_code error;
-  fs::rename(from, to, error);
-  if (error) {  // on another disk
-    fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
-    std::error_code ignored;
-    fs::remove(from, ignored);
-  }
-  return error ? Result<void>(failure("the recording cannot be put there: " + error.message(), to.string()))
-               : Result<void>{};
 }
 
 /// With a path the recording is put there.

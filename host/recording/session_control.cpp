@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "host/api/log.h"
 #include "host/recording/session_recording.h"
 
 namespace meridian::recording {
@@ -43,11 +42,6 @@ Result<void> SessionControl::stopRecording() {
   return finished;
 }
 
-Result<Player> SessionControl::playerOf(const SessionRecording& recording) {
-  return Player::create(recording, camera_,
-                        [this](const std::string& text) { return scripts_.run(text, "recording"); });
-}
-
 Result<void> SessionControl::startPlayback(const std::filesystem::path& file, bool loops, bool keepsTime) {
   if (auto idle = requireIdle(); !idle) {
     return idle;
@@ -56,7 +50,8 @@ Result<void> SessionControl::startPlayback(const std::filesystem::path& file, bo
   if (!recording) {
     return tl::make_unexpected(recording.error());
   }
-  auto player = playerOf(*recording);
+  auto player = Player::create(std::move(*recording), camera_,
+                               [this](const std::string& text) { return scripts_.run(text, "recording"); });
   if (!player) {
     Error error = player.error();
     if (error.where.empty()) {
@@ -65,8 +60,7 @@ Result<void> SessionControl::startPlayback(const std::filesystem::path& file, bo
     return tl::make_unexpected(std::move(error));
   }
   player_.emplace(std::move(*player));
-  loop_ = loops ? std::optional(std::move(*recording)) : std::nullopt;
-  hasPlayed_ = false;
+  loops_ = loops;
   paused_ = false;
   if (!keepsTime) {
     clock_.setTime(player_->startTime());
@@ -76,7 +70,7 @@ Result<void> SessionControl::startPlayback(const std::filesystem::path& file, bo
 
 void SessionControl::stopPlayback() {
   setPlaybackPause(false);
-  loop_.reset();
+  loops_ = false;
   if (isInPlay_) {
     wantsStop_ = true;
   } else {
@@ -95,18 +89,6 @@ void SessionControl::setPlaybackPause(bool paused) {
   clock_.setPause(paused || clockWasPaused_);
 }
 
-void SessionControl::rewind() {
-  auto again = playerOf(*loop_);
-  if (!again) {
-    log::error("{}", again.error().message());  // its first node has gone
-    player_.reset();
-    loop_.reset();
-    return;
-  }
-  player_.emplace(std::move(*again));
-  clock_.setTime(player_->startTime());
-}
-
 void SessionControl::play(double seconds) {
   if (!player_) {
     return;
@@ -120,10 +102,9 @@ void SessionControl::play(double seconds) {
   isInPlay_ = false;
   if (std::exchange(wantsStop_, false)) {
     player_.reset();
-  } else if (player_->finished() && loop_) {
-    rewind();
-  } else {
-    hasPlayed_ = player_->finished();
+  } else if (player_->finished() && loops_) {
+    player_->restart();
+    clock_.setTime(player_->startTime());
   }
 }
 

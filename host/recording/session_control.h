@@ -37,8 +37,6 @@ class SessionControl {
   [[nodiscard]] bool isPlaybackPaused() const { return paused_; }
   /// Paused or not.
   [[nodiscard]] bool isPlaying() const { return player_ && !player_->finished(); }
-  /// Whether the last playback came to its end.
-  [[nodiscard]] bool hasPlayed() const { return hasPlayed_; }
 
   /// Once a frame, after Scene::evaluate; moves the camera while something is played.
   void play(double seconds);
@@ -47,8 +45,6 @@ class SessionControl {
 
  private:
   [[nodiscard]] Result<void> requireIdle() const;
-  [[nodiscard]] Result<Player> playerOf(const SessionRecording& recording);
-  void rewind();
 
   navigation::Camera& camera_;
   scripting::Clock& clock_;
@@ -56,8 +52,7 @@ class SessionControl {
   std::optional<Recorder> recorder_;
   std::filesystem::path recordingFile_;
   std::optional<Player> player_;
-  std::optional<SessionRecording> loop_;  ///< what is played again at its end
-  bool hasPlayed_ = false;
+  bool loops_ = false;  ///< it is played again at its end
   bool isInPlay_ = false;
   bool wantsStop_ = false;
   bool paused_ = false;

@@ -289,6 +289,36 @@ TEST_F(CommandLine, ARecordingIsPlayedToItsEnd) {
   EXPECT_FALSE(fs::exists(in("frames/frame_000006.png")));
 }
 
+TEST_F(CommandLine, ARecordingThatStopsItselfEndsTheRun) {
+  emptyScene();
+  write("flight.osrectxt",
+        "OpenSpace_record/playback03.00A\n"
+        "camera 0.0 0.0 0.0 0.0 5000.0 0.0 0.0 0.0 1.0 1.0 - Place\n"
+        "script 0.25 0.25 1 openspace.sessionRecording.stopPlayback()\n"
+        "camera 9.0 9.0 0.0 0.0 3000.0 0.0 0.0 0.0 1.0 1.0 - Place\n");
+  // Without --frames it would fill the disk if it went on.
+  const Outcome outcome =
+      run("empty.asset --headless --size 8x8 --play flight.osrectxt --fps 10 --frames 30 --output frames");
+  ASSERT_EQ(outcome.code, 0) << outcome.errors;
+  EXPECT_TRUE(fs::exists(in("frames/frame_000003.png")));
+  EXPECT_FALSE(fs::exists(in("frames/frame_000004.png")));
+}
+
+TEST_F(CommandLine, AFullDiskEndsTheRunOnlyWithRecord) {
+  emptyScene();
+  write("record.lua", "openspace.sessionRecording.startRecording()");
+  // No file gets longer than a few KiB, as on a disk that is full.
+  write("full.sh", "trap '' XFSZ\nulimit -f 8\n\"$@\"\n");
+  const std::string frames = "empty.asset --headless --size 8x8 --fps 10 --frames 200 ";
+  const Outcome scripted = run(frames + "--script record.lua", "sh full.sh");
+  EXPECT_EQ(scripted.code, 0) << scripted.errors;
+  EXPECT_THAT(scripted.errors, HasSubstr("the recording ends here"));
+  EXPECT_THAT(scripted.errors, HasSubstr("make room on the disk"));
+  const Outcome asked = run(frames + "--record session.osrectxt", "sh full.sh");
+  EXPECT_EQ(asked.code, 1);
+  EXPECT_THAT(asked.errors, HasSubstr("make room on the disk"));
+}
+
 TEST_F(CommandLine, AnInterruptedRunClosesItsOutput) {
   emptyScene();
   // Interrupts what it is told to run once that has written some pictures, however long it takes to start.

@@ -44,7 +44,7 @@ class FrameWriterTest : public ::testing::Test {
     auto writer = FrameWriter::open(path, size, 25.0);
     ASSERT_TRUE(writer) << writer.error().message();
     for (const std::uint8_t red : reds) {
-      const auto written = (*writer)->write(picture(red, 60, 100));
+      const auto written = (*writer)->write(picture(red, 60, 100), {});
       ASSERT_TRUE(written) << written.error().message();
     }
     const auto closed = (*writer)->close();
@@ -79,8 +79,9 @@ TEST_F(FrameWriterTest, PicturesCarryTheirWords) {
     auto writer = FrameWriter::open(in(path), size, 25.0);
     ASSERT_TRUE(writer);
     graphics::Image image = picture(1, 2, 3);
+    image.metadata["Title"] = "Earth";
+    ASSERT_TRUE((*writer)->write(image, {"\u00a9 Somebody", "NASA"}));
     image.metadata["Copyright"] = "\u00a9 Somebody | NASA";
-    ASSERT_TRUE((*writer)->write(image));
     ASSERT_TRUE((*writer)->close());
     const fs::path file = fs::is_directory(in(path)) ? in(path) / "frame_000000.png" : in(path);
     EXPECT_EQ(graphics::readPng(file).value().metadata, image.metadata);
@@ -185,16 +186,15 @@ TEST_P(VideoTest, HoldsEveryPictureAtItsRate) {
 TEST_P(VideoTest, NamesWhomItsPicturesAreToBeCreditedTo) {
   auto writer = FrameWriter::open(in(GetParam()), size, 25.0);
   ASSERT_TRUE(writer);
-  for (const char* credit : {"A \u00a9", "A \u00a9", "B"}) {
-    graphics::Image image = picture(1, 2, 3);
-    image.metadata["Copyright"] = credit;
-    ASSERT_TRUE((*writer)->write(std::move(image)));
+  using Credits = std::vector<std::string>;
+  for (const Credits& credits : {Credits{"A \u00a9", "B"}, Credits{"A \u00a9", "B", "C"}, Credits{}, Credits{"C"}}) {
+    ASSERT_TRUE((*writer)->write(picture(1, 2, 3), credits));
   }
   ASSERT_TRUE((*writer)->close());
   const Video video = readVideo(in(GetParam()));
-  EXPECT_EQ(video.frames, 3);
+  EXPECT_EQ(video.frames, 4);
   const bool knowsAtItsEnd = in(GetParam()).extension() == ".mp4" || in(GetParam()).extension() == ".mov";
-  EXPECT_EQ(video.copyright, knowsAtItsEnd ? "A \u00a9 | B" : "A \u00a9");
+  EXPECT_EQ(video.copyright, knowsAtItsEnd ? "A \u00a9 | B | C" : "A \u00a9 | B");
 }
 
 INSTANTIATE_TEST_SUITE_P(FrameWriter, VideoTest, ::testing::Values("a.mp4", "a.mkv", "a.mov", "a.webm"),
@@ -206,7 +206,7 @@ TEST_F(FrameWriterTest, AFullDiskIsReportedForAVideo) {
   Result<void> result;
   if (writer) {
     for (int i = 0; i < 8 && result; ++i) {
-      result = (*writer)->write(picture(static_cast<std::uint8_t>(30 * i), 0, 0));
+      result = (*writer)->write(picture(static_cast<std::uint8_t>(30 * i), 0, 0), {});
     }
     if (result) {
       result = (*writer)->close();
@@ -222,7 +222,7 @@ TEST_F(FrameWriterTest, AFolderThatGoesAwayIsReported) {
   fs::remove_all(in("gone"));
   Result<void> result;
   for (int i = 0; i < 64 && result; ++i) {
-    result = (*writer)->write(picture(1, 2, 3));
+    result = (*writer)->write(picture(1, 2, 3), {});
   }
   if (result) {
     result = (*writer)->close();

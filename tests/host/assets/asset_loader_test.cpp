@@ -17,6 +17,9 @@ struct RecordedTarget : AssetTarget {
     if (identifier == nullptr) {
       return failure("the node has no Identifier", where + ": Identifier");
     }
+    if (hasNode(*identifier->string())) {
+      return failure("there is a node already", where + ": Identifier");
+    }
     nodes.push_back(*identifier->string());
     places.push_back(where);
     folders.push_back(folder);
@@ -323,6 +326,84 @@ TEST_F(AssetLoaderTest, ScriptsReloadAssetsAndAskWhoRequiresThem) {
                   "test"));
   EXPECT_FALSE(engine_.run("openspace.asset.reload('base')", "test")) << "nobody added it";
   ASSERT_TRUE(engine_.run("openspace.asset.removeAll() assert(#openspace.asset.allAssets() == 0)", "test"));
+}
+
+TEST_F(AssetLoaderTest, FunctionsThatOutliveTheirAssetSaySo) {
+  folder_.write("a.asset",
+                "local resource, deinitialize, require = asset.resource, asset.onDeinitialize, asset.require\n"
+                "function helper() return resource('x') end\n"
+                "function late() deinitialize(function() openspace.note('ghost') end) end\n"
+                "function more() return require('./b') end");
+  folder_.write("b.asset", "openspace.note('b')");
+  ASSERT_TRUE(loader_.add("a"));
+  ASSERT_TRUE(engine_.run("openspace.note(helper())", "test"));
+  EXPECT_EQ(notes_, (folder_.path() / "x").string() + ' ');
+  notes_.clear();
+  ASSERT_TRUE(engine_.run("old = { helper, late, more }", "test"));
+  const auto refuseAll = [&] {
+    for (const char* call : {"old[1]()", "old[2]()", "old[3]()"}) {
+      const Result<void> done = engine_.run(call, "test");
+      ASSERT_FALSE(done) << call;
+      EXPECT_NE(done.error().message().find((folder_.path() / "a.asset").string() + ":"), std::string::npos);
+      EXPECT_NE(done.error().what.find("was removed"), std::string::npos) << done.error().message();
+    }
+  };
+  ASSERT_TRUE(engine_.run("openspace.asset.reload('a')", "test"));
+  refuseAll();
+  EXPECT_TRUE(engine_.run("helper()", "test")) << "that of the asset which is there now";
+  ASSERT_TRUE(loader_.remove("a"));
+  refuseAll();
+  EXPECT_EQ(notes_, "");
+}
+
+TEST_F(AssetLoaderTest, AnAssetThatGoesMayStillSayWhatToDoWhenItGoes) {
+  folder_.write("a.asset",
+                "asset.onDeinitialize(function()\n"
+                "for i = 1, 50 do asset.onDeinitialize(function() openspace.note('too late') end) end\n"
+                "openspace.note('gone') end)\n"
+                "asset.onDeinitialize(function() asset.onDeinitialize(function() end) end)");
+  ASSERT_TRUE(loader_.add("a"));
+  ASSERT_TRUE(loader_.remove("a"));
+  EXPECT_EQ(notes_, "gone ");
+}
+
+TEST_F(AssetLoaderTest, WhatAFailedAssetAddedGoesWithIt) {
+  using Nodes = std::vector<std::string>;
+  const auto asset = [&](const std::string& second) {
+    folder_.write("a.asset",
+                  "asset.onInitialize(function() openspace.addSceneGraphNode({ Identifier = 'First' })\n"
+                  "openspace.addSceneGraphNode({ " +
+                      second +
+                      " = 'Second' }) end)\n"
+                      "asset.onDeinitialize(function() openspace.removeSceneGraphNode('Second')\n"
+                      "openspace.removeSceneGraphNode('First') end)");
+  };
+  asset("Identifer");
+  folder_.write("top.asset", "asset.require('./a') openspace.addSceneGraphNode({ Identifier = 'Top' })");
+  EXPECT_FALSE(loader_.add("top"));
+  EXPECT_EQ(target_.nodes, (Nodes{"Top", "First"}));
+  asset("Identifier");
+  const Result<void> again = engine_.run("openspace.asset.reload('top')", "test");
+  ASSERT_TRUE(again) << again.error().message();
+  EXPECT_EQ(target_.nodes, (Nodes{"Top", "First", "Second"}));
+}
+
+TEST_F(AssetLoaderTest, AFailedAssetTakesNoNodeOfAnotherWithIt) {
+  const std::string node =
+      "asset.onInitialize(function() openspace.addSceneGraphNode({ Identifier = 'Earth' }) end)\n"
+      "asset.onDeinitialize(function() openspace.removeSceneGraphNode('Earth') end)";
+  folder_.write("a.asset", node);
+  folder_.write("b.asset", node);
+  folder_.write("c.asset", "openspace.addSceneGraphNode({ Identifier = 'Mars' }) error('broken')");
+  ASSERT_TRUE(loader_.add("a"));
+  EXPECT_FALSE(loader_.add("b"));
+  EXPECT_FALSE(loader_.add("c"));
+  ASSERT_TRUE(engine_.run("openspace.removeSceneGraphNode('Mars')", "test"));
+  folder_.write("d.asset", "openspace.addSceneGraphNode({ Identifier = 'Mars' })");
+  ASSERT_TRUE(loader_.add("d"));
+  ASSERT_TRUE(loader_.remove("b"));
+  ASSERT_TRUE(loader_.remove("c"));
+  EXPECT_EQ(target_.nodes, (std::vector<std::string>{"Earth", "Mars"}));
 }
 
 TEST_F(AssetLoaderTest, FindsTheAssetsFolder) {
