@@ -8,6 +8,9 @@
 namespace meridian {
 
 /// The widgets that a panel may ask for, without knowing which toolkit draws them.
+///
+/// Buttons and sections are known by their labels, so two in one section must differ. What follows "##" is not shown
+/// and tells apart those that people call the same: "Ice##2".
 class PanelBuilder {
  public:
   virtual ~PanelBuilder() = default;

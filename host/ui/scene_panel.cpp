@@ -66,7 +66,8 @@ void ScenePanel::buildAnchors(PanelBuilder& builder) {
     return;
   }
   for (const auto& node : camera.scene().nodes()) {
-    if (node->boundingSphere() > 0.0 && !node->isGuiHidden() && builder.button(node->guiName())) {
+    if (node->boundingSphere() > 0.0 && !node->isGuiHidden() &&
+        builder.button(node->guiName() + "##" + node->identifier())) {
       subjects_.goTo(node->identifier());
     }
   }

@@ -7,7 +7,7 @@ namespace meridian::globebrowsing {
 namespace {
 
 void buildLayer(PanelBuilder& builder, Layer& layer) {
-  if (!builder.beginSection(layer.name())) {
+  if (!builder.beginSection(layer.name() + "##" + layer.identifier())) {
     return;
   }
   builder.property(layer.enabled);

@@ -28,6 +28,11 @@ std::vector<std::string> groupNames() {
   return names;
 }
 
+/// A label of its own for the n-th of things that may have the same name, as services' layers and styles may.
+std::string labelOf(const std::string& name, std::size_t n) {
+  return fmt::format("{}##{}", name, n);
+}
+
 /// The identifier, or with a number where the group has it already.
 std::string freeIdentifier(const LayerGroup& group, const std::string& wanted) {
   std::string identifier = wanted;
@@ -106,7 +111,7 @@ void MapServerPanel::buildNewServer(PanelBuilder& builder) {
 }
 
 void MapServerPanel::buildServer(PanelBuilder& builder, const MapServer& server) {
-  if (!builder.beginSection(server.name)) {
+  if (!builder.beginSection(server.name + "##server")) {
     return;
   }
   builder.text(shortened(server.url));
@@ -129,11 +134,12 @@ void MapServerPanel::buildServer(PanelBuilder& builder, const MapServer& server)
 void MapServerPanel::buildOffer(PanelBuilder& builder, const MapServer& server,
                                 const std::vector<OfferedLayer>& offer) {
   std::size_t matches = 0;
-  for (const OfferedLayer& layer : offer) {
+  for (std::size_t i = 0; i < offer.size(); ++i) {
+    const OfferedLayer& layer = offer[i];
     if (!containsIgnoringCase(layer.name, filter_.get())) {
       continue;
     }
-    if (++matches <= mostListed && builder.beginSection(layer.name)) {
+    if (++matches <= mostListed && builder.beginSection(labelOf(layer.name, i))) {
       buildLayer(builder, server, layer);
       builder.endSection();
     }
@@ -158,10 +164,10 @@ void MapServerPanel::buildLayer(PanelBuilder& builder, const MapServer& server, 
   if (!layer.obstacle.empty()) {
     builder.warning("cannot be shown: " + layer.obstacle);
   }
-  for (const OfferedLayer::Style& style : layer.styles) {
-    const bool isOnly = layer.styles.size() == 1;
-    if (builder.button(isOnly ? "Add" : fmt::format("Add, style {}", style.name))) {
-      add(server, layer, style);
+  const bool isOnly = layer.styles.size() == 1;
+  for (std::size_t i = 0; i < layer.styles.size(); ++i) {
+    if (builder.button(labelOf(isOnly ? "Add" : "Add, style " + layer.styles[i].name, i))) {
+      add(server, layer, layer.styles[i]);
     }
   }
 }

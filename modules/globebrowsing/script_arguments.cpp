@@ -5,23 +5,22 @@
 
 #include <fmt/format.h>
 
+#include "globebrowsing/providers/layer_paths.h"
+
 namespace meridian::globebrowsing {
 
 namespace {
 
 /// Paths may begin with a token such as ${SYNC}; what the host does not know is left as it is.
 Value withTokensReplaced(const Host& host, const Value& table) {
-  Table replaced = *table.table();
-  for (const std::string_view key : {"FilePath", "FolderPath"}) {
-    const auto found = replaced.fields.find(key);
-    const std::string* path = found != replaced.fields.end() ? found->second.string() : nullptr;
-    if (path != nullptr && path->starts_with("${")) {
-      if (const auto whole = host.readablePath(*path)) {
-        found->second = whole->string();
+  return withPaths(table, [&](const std::string& path) {
+    if (path.starts_with("${")) {
+      if (const auto whole = host.readablePath(path)) {
+        return whole->string();
       }
     }
-  }
-  return replaced;
+    return path;
+  });
 }
 
 }  // namespace

@@ -331,6 +331,7 @@ std::optional<Composer::Source> Composer::reliefSourceOf(const CompositionPart& 
   if (needsRamp) {
     const std::optional<std::uint32_t> row = relief_.ramp(style.ramp, frame_);
     if (!row) {
+      relief_.tellFull(*part.layer);
       return source;  // more ramps at a time than fit will not be fewer in the next frame
     }
     source.ramp = static_cast<int>(*row);

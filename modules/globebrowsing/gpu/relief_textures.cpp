@@ -1,8 +1,11 @@
 #include "globebrowsing/gpu/relief_textures.h"
 
 #include <array>
+#include <utility>
 
 #include <glm/vec4.hpp>
+
+#include "host/api/log.h"
 
 namespace meridian::globebrowsing {
 
@@ -85,6 +88,15 @@ std::optional<std::uint32_t> ReliefTextures::ramp(const std::shared_ptr<const Co
   glTextureSubImage2D(textures_.ramps.id(), 0, 0, static_cast<GLint>(*row), static_cast<GLsizei>(at), 1, GL_RGBA,
                       GL_FLOAT, texels.data());
   return row;
+}
+
+void ReliefTextures::tellFull(const PropertyOwner& layer) {
+  if (!std::exchange(hasToldFull_, true)) {
+    log::warning(
+        "{} shows nothing: no more than {} layers with colour ramps are composed at a time; disable some of "
+        "the types ColorRelief and Slope",
+        layer.uri(), rampCount);
+  }
 }
 
 void ReliefTextures::bind() const {

@@ -8,6 +8,7 @@
 #include "globebrowsing/gpu/slot_pool.h"
 #include "globebrowsing/layers/relief_tile.h"
 #include "globebrowsing/providers/colour_ramp.h"
+#include "host/api/property_owner.h"
 #include "host/graphics/gl_objects.h"
 
 namespace meridian::globebrowsing {
@@ -23,6 +24,9 @@ class ReliefTextures {
   [[nodiscard]] std::optional<std::uint32_t> tile(const ReliefTile& tile, std::uint64_t frame);
   /// The ramp's row; likewise.
   [[nodiscard]] std::optional<std::uint32_t> ramp(const std::shared_ptr<const ColourRamp>& ramp, std::uint64_t frame);
+
+  /// Says, once, that this layer's ramp finds no row, and what to do.
+  void tellFull(const PropertyOwner& layer);
 
   /// To units 1 to 3, with samplers.
   void bind() const;
@@ -41,6 +45,7 @@ class ReliefTextures {
   Set textures_;
   graphics::Sampler sampler_;
   bool hasTiles_ = false;
+  bool hasToldFull_ = false;
   SlotPool<std::uint64_t> tiles_;  ///< by ReliefTile::id()
   SlotPool<const ColourRamp*> rampRows_;
   std::vector<std::shared_ptr<const ColourRamp>> ramps_;  ///< by row: no other can have its address meanwhile

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "globebrowsing/providers/default_tile_provider.h"
+#include "globebrowsing/providers/layer_paths.h"
 #include "globebrowsing/streaming/tile_streamer.h"
 #include "host/api/log.h"
 
@@ -173,6 +173,9 @@ void Layer::connectProperties() {
 Value Layer::table() const {
   Table table = *data_.applied(request_.table).table();
   const auto keep = [&table](const Property& property) { table.fields[property.identifier()] = property.value(); };
+  if (hadZIndex_ || wasMoved_) {
+    table.fields["ZIndex"] = zIndex_;
+  }
   keep(enabled);
   keep(opacity);
   table.fields["BlendMode"] = blendMode.word();
@@ -192,16 +195,12 @@ Value Layer::table() const {
                                      [&](const Schema::Field& field) { return field.key == property->identifier(); });
       if (isKey && !property->isReadOnly()) {
         keep(*property);
+      } else if (isKey && property->value() == Value("")) {
+        table.fields.erase(property->identifier());  // what was set since holds in its place
       }
     }
   }
-  for (const std::string_view key : {"FilePath", "FolderPath"}) {
-    const auto found = table.fields.find(key);
-    if (found != table.fields.end() && found->second.string() != nullptr) {
-      found->second = dataPath(*found->second.string(), request_.folder).text;
-    }
-  }
-  return table;
+  return withWholePaths(table, request_.folder);
 }
 
 bool Layer::isReady() const {

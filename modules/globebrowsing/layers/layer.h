@@ -53,6 +53,11 @@ class Layer final : public PropertyOwner {
   [[nodiscard]] LayerGroupId group() const { return group_; }
   [[nodiscard]] int zIndex() const { return zIndex_; }
   void setZIndex(int zIndex) { zIndex_ = zIndex; }
+  /// To a place among the others that it keeps when it is written.
+  void moveTo(int zIndex) {
+    zIndex_ = zIndex;
+    wasMoved_ = true;
+  }
   [[nodiscard]] bool hadZIndex() const { return hadZIndex_; }
 
   [[nodiscard]] bool isEnabled() const { return enabled.get(); }
@@ -145,6 +150,7 @@ class Layer final : public PropertyOwner {
   std::uint64_t version_ = 0;
   int zIndex_;
   bool hadZIndex_;
+  bool wasMoved_ = false;
   Sampling sampling_;
   ProviderRequest request_;
   bool wantsRestart_ = false;  ///< not at once: whoever sets many properties holds those of the provider

@@ -106,7 +106,7 @@ Result<void> LayerGroup::move(std::string_view identifier, int position) {
     return {};
   }
   Layer& layer = **found;
-  layer.setZIndex(layers_[static_cast<std::size_t>(to)]->zIndex());
+  layer.moveTo(layers_[static_cast<std::size_t>(to)]->zIndex());
   const auto first = layers_.begin();
   if (from < to) {
     std::rotate(first + from, first + from + 1, first + to + 1);

@@ -18,8 +18,9 @@ void CircuitBreaker::abandonProbe(TimePoint now) {
   }
 }
 
-void CircuitBreaker::succeeded() {
-  state_ = State::Up;
+void CircuitBreaker::succeeded(TimePoint now) {
+  state_ = now < notBefore_ ? State::Down : State::Up;
+  pauseEnd_ = now;
   failures_ = 0;
   pauses_ = 0;
 }
@@ -41,7 +42,7 @@ void CircuitBreaker::failed(bool wasProbe, TimePoint now, double random) {
 }
 
 void CircuitBreaker::pauseFor(std::chrono::milliseconds pause, TimePoint now) {
-  pauseEnd_ = state_ == State::Up ? now + pause : std::max(pauseEnd_, now + pause);
+  notBefore_ = std::max(notBefore_, now + pause);
   state_ = state_ == State::Up ? State::Down : state_;
 }
 

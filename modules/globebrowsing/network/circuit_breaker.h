@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 
 #include "globebrowsing/network/retry_policy.h"
@@ -22,16 +23,17 @@ class CircuitBreaker {
   explicit CircuitBreaker(const RetryOptions& options) : options_(options) {}
 
   [[nodiscard]] State state() const { return state_; }
-  [[nodiscard]] TimePoint pauseEnd() const { return pauseEnd_; }
-  [[nodiscard]] bool mayProbe(TimePoint now) const { return state_ != State::Up && now >= pauseEnd_; }
+  [[nodiscard]] TimePoint pauseEnd() const { return std::max(pauseEnd_, notBefore_); }
+  [[nodiscard]] bool mayProbe(TimePoint now) const { return state_ != State::Up && now >= pauseEnd(); }
 
   /// The request that is sent now is the probe.
   void beginProbe(TimePoint now);
   /// Nobody wants the probe any more: another may go.
   void abandonProbe(TimePoint now);
 
-  /// Any answer proves it up, also to a request that was sent before it was taken to be down.
-  void succeeded();
+  /// Any answer proves it up, also to a request that was sent before it was taken to be down; but a pause that the
+  /// server has asked for goes on: what answers then was under way when it asked.
+  void succeeded(TimePoint now);
   /// Of what is no probe nothing is learned while it is down. `random` in [0, 1) shortens the pause by up to a quarter,
   /// so that many clients do not return together.
   void failed(bool wasProbe, TimePoint now, double random);
@@ -44,6 +46,7 @@ class CircuitBreaker {
   int failures_ = 0;  ///< in a row
   int pauses_ = 0;    ///< since it was last up
   TimePoint pauseEnd_{};
+  TimePoint notBefore_{};  ///< by what the server has asked for
 };
 
 }  // namespace meridian::globebrowsing

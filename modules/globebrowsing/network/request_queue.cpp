@@ -97,7 +97,7 @@ bool RequestQueue::finish(Id id, const Ending& ending, TimePoint now) {
   const bool blamesHost = ending.outcome == Outcome::Unreachable || ending.outcome == Outcome::Unavailable;
   if (!blamesHost) {
     ++host.answers;
-    host.breaker.succeeded();
+    host.breaker.succeeded(now);
   } else {
     host.breaker.failed(wasProbe, now, random_());
     if (ending.retryAfter && ending.retryAfter->count() > 0) {

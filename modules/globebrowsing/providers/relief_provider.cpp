@@ -92,6 +92,8 @@ Result<std::shared_ptr<TileProvider>> RampProvider::make(const ProviderRequest& 
       kind, text != nullptr ? *text : std::string(isSlope ? darkRamp : greyRamp), values);
   if (const std::string* file = valueAt(request.table, "ColorRampFile").string()) {
     provider->file_ = dataPath(*file, request.folder).text;
+    provider->rampFile.put(*file);
+    provider->add(provider->rampFile);
     provider->where_ = placeOf(request, "ColorRampFile");
   }
   return provider;
@@ -102,7 +104,12 @@ RampProvider::RampProvider(ReliefKind kind, std::string ramp, const glm::dvec2& 
       colourRamp({"ColorRamp", "Color ramp", "Values and their colours, as gdaldem color-relief takes them"},
                  std::move(ramp)),
       range({"Range", "Range", "What 0% and 100% mean in the ramp: metres, or degrees of slope"}, values) {
-  colourRamp.onChange([this] { isRampSet_ = true; });
+  colourRamp.onChange([this] {
+    if (!isTaking_) {
+      isRampSet_ = true;
+      rampFile.put({});
+    }
+  });
   add(colourRamp);
   add(range);
 }
@@ -126,8 +133,10 @@ Result<void> RampProvider::openData() {
 }
 
 void RampProvider::takeOpened() {
-  if (file_) {
+  if (file_ && !isRampSet_) {
+    isTaking_ = true;
     colourRamp.put(fileText_);
+    isTaking_ = false;
   }
 }
 

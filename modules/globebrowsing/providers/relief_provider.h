@@ -47,6 +47,8 @@ class RampProvider final : public ReliefProvider {
   [[nodiscard]] Result<void> check() const override;
 
   StringProperty colourRamp;
+  /// One of the properties where the table names a file; empty once another ramp was set.
+  StringProperty rampFile{{"ColorRampFile", "Color ramp file", "Where the color ramp was read from", true}};
   Vec2Property range;
 
  private:
@@ -58,6 +60,7 @@ class RampProvider final : public ReliefProvider {
 
   std::optional<std::string> file_;
   bool isRampSet_ = false;  ///< while it runs
+  bool isTaking_ = false;   ///< ColorRamp becomes the file's
   std::string where_;       ///< of the file, for errors
   std::string fileText_;    ///< written once, before the provider is Ready
 };

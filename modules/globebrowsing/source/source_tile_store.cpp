@@ -65,6 +65,7 @@ class SourceTileStore::State : public std::enable_shared_from_this<State> {
 
   /// One want's part; guarded by the state's mutex.
   struct Wanter {
+    std::shared_ptr<const TileService> service;  ///< that of a tile may be another, which gives the same
     double priority = 0.0;
     std::size_t missing = 0;
     std::function<void()> settled;
@@ -169,7 +170,9 @@ class SourceTileStore::State : public std::enable_shared_from_this<State> {
   std::optional<Error> lastFailure(const TileService& service) const {
     const std::lock_guard lock(mutex_);
     for (const auto& [key, entry] : entries_) {
-      if (entry->service.get() == &service && entry->stage == Entry::Stage::Fetching && entry->fetch != nullptr) {
+      const bool isWanted = std::any_of(entry->wanters.begin(), entry->wanters.end(),
+                                        [&](const Wanter* wanter) { return wanter->service.get() == &service; });
+      if (isWanted && entry->stage == Entry::Stage::Fetching && entry->fetch != nullptr) {
         if (std::optional<Error> failure = entry->fetch->lastFailure()) {
           return failure;
         }
@@ -394,6 +397,7 @@ class SourceTileStore::State : public std::enable_shared_from_this<State> {
 class SourceTileStore::HeldWant final : public Want {
  public:
   HeldWant(std::shared_ptr<State> state, Request request) : state_(std::move(state)) {
+    wanter_.service = request.service;
     wanter_.priority = request.priority;
     wanter_.settled = std::move(request.settled);
     entries_ = state_->attach(request, wanter_);

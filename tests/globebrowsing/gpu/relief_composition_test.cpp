@@ -224,5 +224,30 @@ TEST_F(ReliefCompositionTest, TheLoopingProgramDrawsThemToo) {
   EXPECT_LE(worst, 1);
 }
 
+TEST_F(ReliefCompositionTest, SaysOnceWhichLayerFindsNoPlaceForItsRamp) {
+  compose({{"Type", "ColorRelief"}});
+  std::vector<const Layer*> layers;
+  for (int i = 0; i < 67; ++i) {
+    const auto added = manager_.addLayer(
+        "Overlays", {Table{{}, {{"Identifier", "R" + std::to_string(i)}, {"Type", "ColorRelief"}}}, "test", "", ""});
+    ASSERT_TRUE(added);
+    layers.push_back(*added);
+  }
+  testing::internal::CaptureStderr();
+  composer_->beginFrame(99);
+  for (const Layer* layer : layers) {
+    CompositionPart part;
+    part.layer = layer;
+    part.relief = tile_.get();
+    part.key = {1, index_};
+    EXPECT_TRUE(composer_->compose(0, CompositeKind::Overlay, {&part, 1}));
+  }
+  composer_->endFrame();
+  const std::string said = testing::internal::GetCapturedStderr();
+  const std::size_t first = said.find("Overlays.R64 shows nothing");
+  EXPECT_NE(first, std::string::npos) << said;
+  EXPECT_EQ(said.find("shows nothing"), said.rfind("shows nothing")) << said;
+}
+
 }  // namespace
 }  // namespace meridian::globebrowsing

@@ -18,7 +18,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Opens the sections and presses the buttons that it is told to: "SECTION/BUTTON", by the innermost section.
+/// Opens the sections and presses the buttons that it is told to: "SECTION/BUTTON", by the innermost section; with or
+/// without what tells apart those that are called the same.
 class Hand final : public PanelBuilder {
  public:
   void text(std::string_view text) override { texts.emplace_back(text); }
@@ -26,11 +27,13 @@ class Hand final : public PanelBuilder {
   void property(Property& property) override { properties[property.identifier()] = &property; }
   [[nodiscard]] bool button(std::string_view label) override {
     const std::string whole = sections_.back() + '/' + std::string(label);
-    buttons.push_back(whole);
-    return whole == pressed;
+    buttons.push_back(shown(sections_.back()) + '/' + shown(label));
+    note(label);
+    return whole == pressed || buttons.back() == pressed;
   }
   [[nodiscard]] bool beginSection(std::string_view title) override {
-    sections.emplace_back(title);
+    note(title);
+    sections.push_back(shown(title));
     sections_.emplace_back(title);
     return true;
   }
@@ -44,7 +47,18 @@ class Hand final : public PanelBuilder {
   std::map<std::string, Property*> properties;
 
  private:
+  static std::string shown(std::string_view label) { return std::string(label.substr(0, label.find("##"))); }
+  /// Of two widgets of one label in one section a user could reach only the first.
+  void note(std::string_view label) {
+    std::string path;
+    for (const std::string& section : sections_) {
+      path += section + '\n';
+    }
+    EXPECT_TRUE(labels_.insert(path + std::string(label)).second) << label;
+  }
+
   std::vector<std::string> sections_{""};
+  std::set<std::string> labels_;
 };
 
 class MapServerPanelTest : public testing::Test {
@@ -78,6 +92,7 @@ class MapServerPanelTest : public testing::Test {
   void set(const std::string& property, const Value& value) {
     ASSERT_TRUE(build().properties.at(property)->set(value)) << property;
   }
+  static std::string textOf(const Layer& layer) { return *layer.table().find("FilePath")->string(); }
   static OfferedLayer offered(const std::string& name, const std::vector<std::string>& styles) {
     OfferedLayer layer{name, "<GDAL_WMS/>"};
     layer.extent = Extent{-0.5, -0.25, 0.5, 0.25};
@@ -122,6 +137,17 @@ TEST_F(MapServerPanelTest, LoadsAServerAndListsWhatItOffers) {
   const Hand filtered = build();
   EXPECT_THAT(filtered.sections, testing::AllOf(Contains("Ice"), testing::Not(Contains("Clouds"))));
   EXPECT_THAT(filtered.texts, Contains("1 of 3 layers"));
+}
+
+TEST_F(MapServerPanelTest, LayersAndStylesOfOneNameAreEachAdded) {
+  servers_.add({"New server", "Earth", "https://maps"});
+  asked_[0].second(std::vector<OfferedLayer>{offered("Ice", {"a"}), offered("Ice", {"b", "b"})});
+  build("Ice##1/Add, style b##1");
+  build("Ice##0/Add##0");
+  const LayerGroup& group = globe("Earth").layers().group(LayerGroupId::ColorLayers);
+  ASSERT_EQ(group.layers().size(), 2U);
+  EXPECT_EQ(textOf(*group.layers()[0]), "http://localhost:9/b/{z}/{x}/{y}.png");
+  EXPECT_EQ(textOf(*group.layers()[1]), "http://localhost:9/a/{z}/{x}/{y}.png");
 }
 
 TEST_F(MapServerPanelTest, SaysWhyAServerCannotBeUsedAndAsksAgain) {
@@ -209,6 +235,16 @@ TEST_F(MapServerPanelTest, ScriptsWriteTheLayersThatScriptsAdded) {
   std::ifstream stream(host_.folder + "/a.asset");
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   EXPECT_THAT(text, HasSubstr(host_.folder + "/a.tif")) << "the asset lies elsewhere than the script";
+}
+
+TEST_F(MapServerPanelTest, TokensAreReplacedInAllPathsOfAScriptsLayer) {
+  ASSERT_TRUE(engine_.run(
+      "openspace.globebrowsing.addLayer('Earth', 'ColorLayers', { Identifier = 'A', Colormap = '${A}/c.png', "
+      "Type = 'TemporalTileProvider', Folder = { Folder = '${A}/days', Format = '%Y' } })",
+      "test.lua"));
+  const Value table = globe("Earth").layers().group(LayerGroupId::ColorLayers).layers()[0]->request().table;
+  EXPECT_EQ(*table.find("Colormap")->string(), host_.folder + "/${A}/c.png") << "as this host has them";
+  EXPECT_EQ(*table.find("Folder")->find("Folder")->string(), host_.folder + "/${A}/days");
 }
 
 TEST_F(MapServerPanelTest, WithoutGlobesItSaysSo) {

@@ -187,6 +187,30 @@ TEST_F(RequestQueueTest, RetryAfterHoldsTheWholeHost) {
   EXPECT_THAT(startAll(queue), ElementsAre(1));
 }
 
+TEST_F(RequestQueueTest, RetryAfterHoldsTheHostWhateverElseWasUnderWay) {
+  RequestQueue queue = make(4, 4);
+  for (RequestQueue::Id id = 1; id <= 4; ++id) {
+    queue.add(id, "a", 1.0);
+  }
+  ASSERT_EQ(startAll(queue).size(), 4U);
+  ASSERT_TRUE(queue.finish(1, {Outcome::Unavailable, milliseconds(3000)}, now));
+  now += milliseconds(5);
+  queue.finish(2, {}, now);
+  EXPECT_FALSE(queue.mayAsk("a", now));
+  EXPECT_THAT(startAll(queue), ElementsAre()) << "it has been asked to wait, and not been told otherwise";
+  ASSERT_TRUE(queue.finish(3, {Outcome::Unavailable, milliseconds(1000)}, now));
+  queue.finish(4, {}, now);
+  EXPECT_THAT(queue.recallProbes("a"), ElementsAre());
+  EXPECT_EQ(queue.wakeAt(now), now + milliseconds(2995));
+  now += milliseconds(2994);
+  EXPECT_THAT(startAll(queue), ElementsAre());
+  now += milliseconds(1);
+  const Ids probe = startAll(queue);
+  ASSERT_EQ(probe.size(), 1U);
+  queue.finish(probe.front(), {}, now);
+  EXPECT_EQ(startAll(queue).size(), 1U);
+}
+
 TEST_F(RequestQueueTest, ACancelledProbeMakesRoomForTheNext) {
   RequestQueue queue = make(4, 4);
   for (RequestQueue::Id id = 1; id <= 6; ++id) {

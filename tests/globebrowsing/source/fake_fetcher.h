@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -52,7 +53,7 @@ class FakeFetcher final : public Fetcher {
     ++rejected_[request.url];
   }
 
-  /// While stalled, nothing is answered.
+  /// While stalled, nothing is answered, and each request says so.
   void stall(bool isStalled) {
     const std::lock_guard lock(mutex_);
     isStalled_ = isStalled;
@@ -99,6 +100,10 @@ class FakeFetcher final : public Fetcher {
     void setPriority(double priority) override {
       const std::lock_guard lock(fetcher_.mutex_);
       item_->priority = priority;
+    }
+    [[nodiscard]] std::optional<Error> lastFailure() const override {
+      const std::lock_guard lock(fetcher_.mutex_);
+      return fetcher_.isStalled_ ? std::optional(Error{"the server is stalled", item_->url}) : std::nullopt;
     }
 
    private:

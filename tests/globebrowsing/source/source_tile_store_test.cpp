@@ -69,6 +69,19 @@ class SourceTileStoreTest : public testing::Test {
       fetcher_, [this](std::function<void()> task) { worker_.post(std::move(task)); }, decodeTexels});
 };
 
+TEST_F(SourceTileStoreTest, SaysWhyItWaitsToEachServiceThatWantsTheTile) {
+  fetcher_->stall(true);
+  const auto other = makeService();
+  const auto first = want({{0, 1, 1}});
+  auto second = store_->want({other, PixelKind::Colours, {{0, 1, 1}}, 1.0, {}});
+  EXPECT_EQ(fetcher_->asked().size(), 1U) << "they share it";
+  EXPECT_TRUE(store_->lastFailure(*service_));
+  EXPECT_TRUE(store_->lastFailure(*other));
+  second.reset();
+  EXPECT_FALSE(store_->lastFailure(*other)) << "it waits for nothing";
+  EXPECT_TRUE(store_->lastFailure(*service_));
+}
+
 TEST_F(SourceTileStoreTest, FetchesAndDecodesOnceForAllAndAcceptsThen) {
   fetcher_->stall(true);
   std::latch both(2);

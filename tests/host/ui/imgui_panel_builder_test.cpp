@@ -95,6 +95,19 @@ TEST_F(ImGuiPanelBuilderTest, AButtonSaysWhenItWasPressed) {
   EXPECT_EQ(pressed, 1);
 }
 
+TEST_F(ImGuiPanelBuilderTest, WhatIsCalledTheSameIsToldApartByWhatIsNotShown) {
+  int first = 0;
+  int second = 0;
+  click(
+      [&](PanelBuilder& builder) {
+        first += builder.button("Add##0") ? 1 : 0;
+        second += builder.button("Add##1") ? 1 : 0;
+      },
+      0.5F);
+  EXPECT_EQ(first, 0);
+  EXPECT_EQ(second, 1);
+}
+
 TEST_F(ImGuiPanelBuilderTest, EveryTypeAndOddContentIsBuilt) {
   IntProperty whole({"Whole"}, 3);
   StringProperty text({"Text"}, "100 %s");

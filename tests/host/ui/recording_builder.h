@@ -15,8 +15,8 @@ class RecordingBuilder final : public PanelBuilder {
   void warning(std::string_view text) override { warnings.emplace_back(text); }
   void property(Property& property) override { properties.push_back(&property); }
   [[nodiscard]] bool button(std::string_view label) override {
-    buttons.emplace_back(label);
-    return pressed.contains(std::string(label));
+    buttons.emplace_back(label.substr(0, label.find("##")));
+    return pressed.contains(buttons.back());
   }
   [[nodiscard]] bool beginSection(std::string_view /*title*/) override { return true; }
   void endSection() override {}
