@@ -57,4 +57,14 @@ TEST(OddWms, ManyCrsNamesTakeNoLonger) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
 }
 
+TEST(OddXml, BytesMayBeginWithTheMarkOfUtf16) {
+  for (const char* mark : {"\xFF\xFE", "\xFE\xFF"}) {
+    const auto capabilities = parse(std::string(mark) +
+                                    "<WMT_MS_Capabilities version=\"1.1.1\"><Capability><Layer><Name>a</Name></Layer>"
+                                    "</Capability></WMT_MS_Capabilities>");
+    ASSERT_TRUE(capabilities) << capabilities.error().message();
+    EXPECT_EQ(capabilities->layers.size(), 1U);
+  }
+}
+
 }  // namespace meridian::globebrowsing
