@@ -23,7 +23,57 @@ TileService serviceOfOnly(const Result<Capabilities>& capabilities, const LayerC
   return service ? std::move(*service) : TileService{};
 }
 
+std::string matrixSet(const std::string& name, const std::string& crs, const std::string& corner, const char* scale,
+                      int columns, int rows) {
+  return "<TileMatrixSet><Identifier>" + name + "</Identifier><SupportedCRS>" + crs +
+         "</SupportedCRS><TileMatrix><Identifier>0</Identifier><ScaleDenominator>" + scale +
+         "</ScaleDenominator><TopLeftCorner>" + corner +
+         "</TopLeftCorner><TileWidth>256</TileWidth><TileHeight>256</TileHeight><MatrixWidth>" +
+         std::to_string(columns) + "</MatrixWidth><MatrixHeight>" + std::to_string(rows) +
+         "</MatrixHeight></TileMatrix></TileMatrixSet>";
+}
+
+std::string degrees(const std::string& corner = "90 -180") {
+  return matrixSet("d", "urn:ogc:def:crs:EPSG::4326", corner, "279541132.0143589", 2, 1);
+}
+
+std::string wmts(const std::string& box, const std::string& links, const std::string& rest, const std::string& sets) {
+  return "<Capabilities version=\"1.0.0\"><OperationsMetadata><Operation name=\"GetTile\"><DCP><HTTP><Post "
+         "href=\"http://h/post\"/></HTTP></DCP><DCP><HTTP><Get href=\"http://h/kvp?\"/></HTTP></DCP></Operation>"
+         "</OperationsMetadata><Contents><Layer><Identifier>a</Identifier><WGS84BoundingBox><LowerCorner>" +
+         box.substr(0, box.find(';')) + "</LowerCorner><UpperCorner>" + box.substr(box.find(';') + 1) +
+         "</UpperCorner></WGS84BoundingBox><Style><Identifier>s</Identifier></Style><Format>image/png</Format>"
+         "<TileMatrixSetLink>" +
+         links + "</TileMatrixSetLink>" + rest + "</Layer>" + sets + "</Contents></Capabilities>";
+}
+
+const std::string linkToDegrees = "<TileMatrixSet>d</TileMatrixSet>";
+
 }  // namespace
+
+TEST(OddWmts, OneLinkMayNameSeveralSets) {
+  const auto capabilities = parse(
+      wmts("-180 -80;180 80", linkToDegrees + "<TileMatrixSet>m</TileMatrixSet>", {},
+           degrees() + matrixSet("m", "EPSG:3857", "-20037508.342789 20037508.342789", "559082264.0287178", 1, 1)));
+  LayerChoices choices;
+  choices.matrixSet = "m";
+  EXPECT_EQ(serviceOfOnly(capabilities, choices).crs, "EPSG:3857");
+}
+
+TEST(OddWmts, TheAddressForGetMayComeAfterThatForPost) {
+  const TileService service = serviceOfOnly(parse(wmts("-180 -90;180 90", linkToDegrees, {}, degrees())));
+  ASSERT_EQ(service.matrices.size(), 1U);
+  EXPECT_EQ(service.url({0, 1, 0}).substr(0, 13), "http://h/kvp?");
+}
+
+TEST(OddWmts, ImagesAreAskedForByKeysWhereOnlyOtherTilesHaveAddresses) {
+  const std::string vectors =
+      "<Format>application/x-protobuf</Format><ResourceURL resourceType=\"tile\" format=\"application/x-protobuf\" "
+      "template=\"http://h/{TileMatrix}/{TileRow}/{TileCol}.pbf\"/>";
+  const TileService service = serviceOfOnly(parse(wmts("-180 -90;180 90", linkToDegrees, vectors, degrees())));
+  ASSERT_EQ(service.matrices.size(), 1U);
+  EXPECT_NE(service.url({0, 1, 0}).find("FORMAT=image/png"), std::string::npos) << service.url({0, 1, 0});
+}
 
 TEST(OddWms, TheAddressForGetMayComeAfterThatForPost) {
   const TileService service = serviceOfOnly(
