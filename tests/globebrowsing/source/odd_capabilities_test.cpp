@@ -75,6 +75,40 @@ TEST(OddWmts, ImagesAreAskedForByKeysWhereOnlyOtherTilesHaveAddresses) {
   EXPECT_NE(service.url({0, 1, 0}).find("FORMAT=image/png"), std::string::npos) << service.url({0, 1, 0});
 }
 
+TEST(OddWmts, ExtentsBesideTheSetsTurnLoseNothing) {
+  struct Case {
+    const char* box;
+    const char* corner;
+    double west;
+    double east;
+  };
+  for (const Case& test : {Case{"0 -90;360 90", "90 -180", -180, 180},      // what lies west of 0 is asked for, too
+                           Case{"170 -40;-170 -20", "90 -180", -180, 180},  // both ends
+                           Case{"190 -40;200 -20", "90 -180", -170, -160},  // moved
+                           Case{"-180 -40;180 20", "90 0", 0, 360},         // a set from 0
+                           Case{"-20 -40;-10 -20", "90 0", 340, 350}, Case{"10 -40;20 -20", "90 -180", 10, 20}}) {
+    SCOPED_TRACE(std::string(test.box) + " in " + test.corner);
+    const TileService service = serviceOfOnly(parse(wmts(test.box, linkToDegrees, {}, degrees(test.corner))));
+    EXPECT_NEAR(service.west, test.west, 1e-6);
+    EXPECT_NEAR(service.east, test.east, 1e-6);
+  }
+}
+
+TEST(OddWmts, CornersInTheOtherOrderAreTurnedWhereNothingElseFits) {
+  // ETRS89 / LAEA Europe has its northing first; here the easting is.
+  const TileService turned =
+      serviceOfOnly(parse(wmts("5 48;15 55", "<TileMatrixSet>e</TileMatrixSet>", {},
+                               matrixSet("e", "urn:ogc:def:crs:EPSG::3035", "3800000 4200000", "10000000", 2, 2))));
+  ASSERT_EQ(turned.matrices.size(), 1U);
+  EXPECT_EQ(turned.matrices[0].left, 4200000) << "as it should be read";
+  const TileService odd =
+      serviceOfOnly(parse(wmts("-112 38;-108 43", "<TileMatrixSet>m</TileMatrixSet>", {},
+                               matrixSet("m", "EPSG:3857", "6000000 -13000000", "10000000", 2, 2))));
+  ASSERT_EQ(odd.matrices.size(), 1U);
+  EXPECT_EQ(odd.matrices[0].left, -13000000);
+  EXPECT_EQ(odd.matrices[0].top, 6000000);
+}
+
 TEST(OddWms, TheAddressForGetMayComeAfterThatForPost) {
   const TileService service = serviceOfOnly(
       parse("<WMT_MS_Capabilities version=\"1.1.1\"><Service><OnlineResource href=\"http://h/about\"/></Service>"
@@ -95,6 +129,8 @@ TEST(OddWms, BoxesAreFoundByAnyNameOfTheirCrs) {
   EXPECT_EQ(service.north, 1000);
 }
 
+// GeoServer lists every CRS that it knows for every layer. Each name is looked at once, whatever their number: what
+// compares all with all takes minutes here.
 TEST(OddWms, ManyCrsNamesTakeNoLonger) {
   std::string names;
   for (int code = 0; code < 150'000; ++code) {
