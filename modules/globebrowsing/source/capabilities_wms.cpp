@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <unordered_set>
 
 #include "globebrowsing/source/capabilities_parts.h"
 #include "globebrowsing/source/service_text.h"
@@ -96,7 +97,10 @@ class WmsReader {
       }
     }
     std::erase(formats_, std::string());
-    const pugi::xml_node get = child(getMap, "DCPType/HTTP/Get");
+    pugi::xml_node get;  // some name the address for Post in an element of its own, and first
+    for (const pugi::xml_node& platform : children(getMap, "DCPType")) {
+      get = get ? get : child(platform, "HTTP/Get");
+    }
     std::string address = attribute(child(get, "OnlineResource"), "href");
     address = address.empty() ? attribute(get, "onlineResource") : address;
     address = address.empty() ? serviceAddress_ : address;
@@ -129,17 +133,25 @@ class WmsReader {
     }
   }
 
-  void readPlaces(const pugi::xml_node& node, CapabilitiesLayer& layer) {
+  static void readCrsNames(const pugi::xml_node& node, CapabilitiesLayer& layer) {
+    std::unordered_set<std::string> known;  // there may be thousands
     for (const pugi::xml_node& entry : node.children()) {
       if (!isNamed(entry, "SRS") && !isNamed(entry, "CRS")) {
         continue;
       }
-      for (const std::string& name : split(text(entry), " \t\r\n,")) {
-        if (std::find(layer.crs.begin(), layer.crs.end(), name) == layer.crs.end()) {
-          layer.crs.push_back(name);
+      if (known.empty()) {
+        known.insert(layer.crs.begin(), layer.crs.end());
+      }
+      for (std::string& name : split(text(entry), " \t\r\n,")) {
+        if (known.insert(name).second) {
+          layer.crs.push_back(std::move(name));
         }
       }
     }
+  }
+
+  void readPlaces(const pugi::xml_node& node, CapabilitiesLayer& layer) {
+    readCrsNames(node, layer);
     pugi::xml_node geographic = child(node, "EX_GeographicBoundingBox");
     geographic = geographic ? geographic : child(node, "LatLonBoundingBox");
     if (const std::optional<Extent> degrees = readGeographicBox(geographic)) {

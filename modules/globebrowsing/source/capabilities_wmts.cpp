@@ -159,19 +159,24 @@ class WmtsReader {
       if (!equalIgnoringCase(attribute(operation, "name"), "GetTile")) {
         continue;
       }
-      for (const pugi::xml_node& get : children(child(operation, "DCP/HTTP"), "Get")) {
-        std::string encodings;
-        for (const pugi::xml_node& constraint : children(get, "Constraint")) {
-          for (const pugi::xml_node& value : children(child(constraint, "AllowedValues"), "Value")) {
-            encodings += text(value) + " ";
-          }
-        }
-        const std::string address = attribute(get, "href");
-        if (!address.empty() && (encodings.empty() || containsIgnoringCase(encodings, "KVP"))) {
-          keyValueAddress_ = resolvedUrl(document_.where(), repairedUrl(address));
-          return;
+      for (const pugi::xml_node& platform : children(operation, "DCP")) {
+        for (const pugi::xml_node& get : children(child(platform, "HTTP"), "Get")) {
+          readKeyValueAddress(get);
         }
       }
+    }
+  }
+
+  void readKeyValueAddress(const pugi::xml_node& get) {
+    std::string encodings;
+    for (const pugi::xml_node& constraint : children(get, "Constraint")) {
+      for (const pugi::xml_node& value : children(child(constraint, "AllowedValues"), "Value")) {
+        encodings += text(value) + " ";
+      }
+    }
+    const std::string address = attribute(get, "href");
+    if (keyValueAddress_.empty() && !address.empty() && (encodings.empty() || containsIgnoringCase(encodings, "KVP"))) {
+      keyValueAddress_ = resolvedUrl(document_.where(), repairedUrl(address));
     }
   }
 
@@ -242,24 +247,30 @@ class WmtsReader {
 
   void readLinks(const pugi::xml_node& node, CapabilitiesLayer& layer) {
     for (const pugi::xml_node& entry : children(node, "TileMatrixSetLink")) {
-      const std::string name = text(entry, "TileMatrixSet");
-      const auto set = std::find_if(result_.matrixSets.begin(), result_.matrixSets.end(),
-                                    [&](const MatrixSet& candidate) { return candidate.identifier == name; });
-      if (set == result_.matrixSets.end()) {
-        result_.problems.push_back(document_.placeOf(entry) + ": there is no matrix set '" + name + "'");
-        continue;
+      // One set a link, says the standard; some list all of theirs in one.
+      for (const pugi::xml_node& named : children(entry, "TileMatrixSet")) {
+        readLink(entry, text(named), layer);
       }
-      MatrixSetLink link{static_cast<std::size_t>(set - result_.matrixSets.begin())};
-      for (const pugi::xml_node& limits : children(child(entry, "TileMatrixSetLimits"), "TileMatrixLimits")) {
-        const auto value = [&](std::string_view what, std::int64_t otherwise) {
-          return integer(text(limits, what)).value_or(otherwise);
-        };
-        constexpr std::int64_t most = std::int64_t{1} << 40;
-        link.limits.push_back({text(limits, "TileMatrix"), value("MinTileRow", 0), value("MaxTileRow", most),
-                               value("MinTileCol", 0), value("MaxTileCol", most)});
-      }
-      layer.matrixSets.push_back(std::move(link));
     }
+  }
+
+  void readLink(const pugi::xml_node& entry, const std::string& name, CapabilitiesLayer& layer) {
+    const auto set = std::find_if(result_.matrixSets.begin(), result_.matrixSets.end(),
+                                  [&](const MatrixSet& candidate) { return candidate.identifier == name; });
+    if (set == result_.matrixSets.end()) {
+      result_.problems.push_back(document_.placeOf(entry) + ": there is no matrix set '" + name + "'");
+      return;
+    }
+    MatrixSetLink link{static_cast<std::size_t>(set - result_.matrixSets.begin())};
+    for (const pugi::xml_node& limits : children(child(entry, "TileMatrixSetLimits"), "TileMatrixLimits")) {
+      const auto value = [&](std::string_view what, std::int64_t otherwise) {
+        return integer(text(limits, what)).value_or(otherwise);
+      };
+      constexpr std::int64_t most = std::int64_t{1} << 40;
+      link.limits.push_back({text(limits, "TileMatrix"), value("MinTileRow", 0), value("MaxTileRow", most),
+                             value("MinTileCol", 0), value("MaxTileCol", most)});
+    }
+    layer.matrixSets.push_back(std::move(link));
   }
 
   void readAddresses(const pugi::xml_node& node, CapabilitiesLayer& layer) {
@@ -271,7 +282,7 @@ class WmtsReader {
             {attribute(resource, "format"), resolvedUrl(document_.where(), repairedUrl(address))});
       }
     }
-    if (!layer.addresses.empty() || keyValueAddress_.empty()) {
+    if (hasImages(layer) || keyValueAddress_.empty()) {
       return;
     }
     for (const std::string& format : layer.formats) {
@@ -292,6 +303,13 @@ class WmtsReader {
     }
   }
 
+  /// Whether one of the addresses gives tiles that can be read here.
+  [[nodiscard]] static bool hasImages(const CapabilitiesLayer& layer) {
+    return std::any_of(layer.addresses.begin(), layer.addresses.end(), [](const AddressTemplate& address) {
+      return address.format.empty() || formatRank(address.format).has_value();
+    });
+  }
+
   [[nodiscard]] std::string obstacleOf(const CapabilitiesLayer& layer) const {
     if (layer.identifier.empty()) {
       return "it has no identifier";
@@ -306,9 +324,7 @@ class WmtsReader {
     if (layer.addresses.empty()) {
       return "the service does not say where its tiles are";
     }
-    if (std::none_of(layer.addresses.begin(), layer.addresses.end(), [](const AddressTemplate& address) {
-          return address.format.empty() || formatRank(address.format).has_value();
-        })) {
+    if (!hasImages(layer)) {
       return "its tiles are no images that can be read here";
     }
     return {};

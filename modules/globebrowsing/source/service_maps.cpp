@@ -22,12 +22,19 @@ std::vector<std::string> crsByPreference(const CapabilitiesLayer& layer) {
   if (names.empty()) {
     names.emplace_back("EPSG:4326");
   }
-  const auto rank = [](const std::string& name) {
+  const auto rankOf = [](const std::string& name) {
     const std::string canonical = canonicalCrsName(name);
     return canonical == "CRS:84" ? 0 : canonical == "EPSG:4326" ? 1 : canonical == "EPSG:3857" ? 3 : 2;
   };
-  std::stable_sort(names.begin(), names.end(),
-                   [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+  // GeoServer lists thousands for each of a thousand layers: every name is looked at once.
+  std::vector<std::pair<int, std::string>> ranked;
+  ranked.reserve(names.size());
+  for (std::string& name : names) {
+    const int rank = rankOf(name);
+    ranked.emplace_back(rank, std::move(name));
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::transform(ranked.begin(), ranked.end(), names.begin(), [](auto& entry) { return std::move(entry.second); });
   return names;
 }
 
@@ -49,7 +56,7 @@ std::optional<Extent> extentIn(const CapabilitiesLayer& layer, const std::string
     return geographic ? geographic : world;
   }
   for (const auto& [boxCrs, box] : layer.boundingBoxes) {
-    if (boxCrs == name) {
+    if (boxCrs == name || canonicalCrsName(boxCrs) == canonicalCrsName(name)) {
       const bool isTurned = isAxisOrdered && crs.isNorthingFirst();
       const Extent upright = isTurned ? Extent{box.south, box.west, box.north, box.east} : box;
       if (upright.west < upright.east && upright.south < upright.north) {

@@ -78,6 +78,34 @@ Extent extentIn(const MapCrs& crs, const CapabilitiesLayer& layer) {
   return extent ? *extent : Extent{-infinity, -infinity, infinity, infinity};
 }
 
+/// An extent over the antimeridian, or of 0 to 360 degrees, on the one turn that a set of tiles has: moved there, or
+/// the whole turn where it lies at both of its ends.
+Extent onTurn(Extent extent, const MapCrs& crs, const std::vector<TileMatrix>& matrices) {
+  if (!(crs.isGeographic() || crs.isWebMercator()) || matrices.empty() || !std::isfinite(extent.west + extent.east)) {
+    return extent;
+  }
+  const double turn = crs.isGeographic() ? 360.0 : 2 * webMercatorHalfWidth;
+  const double near = 1e-9 * turn;
+  const TileMatrix& last = matrices.back();
+  const double span = static_cast<double>(last.lastColumn + 1) * last.tileWidth * last.pixelWidth;
+  const bool beginsAtZero = std::abs(last.left) < near && span > 0.5 * turn + near;
+  const double west = beginsAtZero ? 0.0 : -0.5 * turn;
+  for (const double shift : {0.0, -turn, turn}) {
+    if (extent.west + shift >= west - near && extent.east + shift <= west + turn + near) {
+      return {extent.west + shift, extent.south, extent.east + shift, extent.north};
+    }
+  }
+  return {west, extent.south, west + turn, extent.north};
+}
+
+/// Corners as if their axes had been written the other way round.
+std::vector<TileMatrix> turned(std::vector<TileMatrix> matrices) {
+  for (TileMatrix& matrix : matrices) {
+    std::swap(matrix.left, matrix.top);
+  }
+  return matrices;
+}
+
 Result<AddressTemplate> chooseAddress(const Capabilities& capabilities, const CapabilitiesLayer& layer,
                                       const LayerChoices& choices) {
   std::vector<AddressTemplate> addresses = layer.addresses;
@@ -176,7 +204,13 @@ Result<TileService> tilesOf(const Capabilities& capabilities, const Capabilities
   service.name = layer.title;
   service.crs = crs.definition();
   service.attribution = creditText(layer.attribution.empty() ? capabilities.attribution : layer.attribution);
-  if (auto placed = setMatrices(service, limited(set, **link), extentIn(crs, layer)); !placed) {
+  const std::vector<TileMatrix> matrices = limited(set, **link);
+  const Extent extent = onTurn(extentIn(crs, layer), crs, matrices);
+  auto placed = setMatrices(service, matrices, extent);
+  if (!placed && !set.southOrigin) {
+    placed = setMatrices(service, turned(matrices), extent);
+  }
+  if (!placed) {
     placed.error().what = "the layer '" + layer.title + "' has no tiles within the extent that it declares";
     return tl::make_unexpected(std::move(placed.error()));
   }

@@ -115,7 +115,7 @@ void TimeDimension::addInterval(std::string_view part, CalendarMilliseconds now)
     return refuse("does not begin or end with a time");
   }
   CalendarPeriod period;
-  if (pieces.size() == 3 && pieces[2] != "0") {
+  if (pieces.size() == 3 && pieces[2] != "0" && pieces[2] != "P" && pieces[2] != "PT") {
     const std::optional<CalendarPeriod> read = readPeriod(pieces[2]);
     if (!read) {
       return refuse("has no period that can be read");

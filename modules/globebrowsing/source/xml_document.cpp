@@ -105,14 +105,19 @@ std::string toUtf8(std::span<const std::uint8_t> bytes) {
   if (starts({0, 0, 0xFE, 0xFF}) || starts({0, 0, 0, '<'})) {
     return fromWide(bytes, 4, true);
   }
-  if (starts({0xFF, 0xFE}) || starts({'<', 0})) {
+  // Some put UTF-16's mark before a document in bytes.
+  const bool hasStrayMark =
+      (starts({0xFF, 0xFE}) || starts({0xFE, 0xFF})) && bytes.size() >= 4 && bytes[2] == '<' && bytes[3] != 0;
+  if (!hasStrayMark && (starts({0xFF, 0xFE}) || starts({'<', 0}))) {
     return fromWide(bytes, 2, false);
   }
-  if (starts({0xFE, 0xFF}) || starts({0, '<'})) {
+  if (!hasStrayMark && (starts({0xFE, 0xFF}) || starts({0, '<'}))) {
     return fromWide(bytes, 2, true);
   }
   if (starts({0xEF, 0xBB, 0xBF})) {
     bytes = bytes.subspan(3);
+  } else if (hasStrayMark) {
+    bytes = bytes.subspan(2);
   }
   std::string text(bytes.begin(), bytes.end());
   const std::string encoding = declaredEncoding(text);

@@ -139,8 +139,9 @@ TEST(TimeDimension, LeapSecondsDoNotShiftSteps) {
 }
 
 TEST(TimeDimension, ContinuousIntervalsAreTakenInWholeUnits) {
-  for (const char* text : {"2000-01-01T00:00:00Z/2001-01-01T00:00:00Z", "2000-01-01T00:00:00Z/2001-01-01T00:00:00Z/0",
-                           "2000-01-01T00:00:00Z/2001-01-01T00:00:00Z/PT0S"}) {
+  for (const char* text :
+       {"2000-01-01T00:00:00Z/2001-01-01T00:00:00Z", "2000-01-01T00:00:00Z/2001-01-01T00:00:00Z/0",
+        "2000-01-01T00:00:00Z/2001-01-01T00:00:00Z/PT0S", "2000-01-01T00:00:00Z/2001-01-01T00:00:00Z/P"}) {
     const TimeDimension days = dimension(text);
     EXPECT_EQ(days.count(), 367U) << text;
     EXPECT_EQ(textOf(days.atOrBefore(at("2000-05-05T05:05:05"))), "2000-05-05T00:00:00Z");
