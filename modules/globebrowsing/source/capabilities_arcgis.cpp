@@ -184,7 +184,13 @@ Capabilities readMaps(const Json& document, Capabilities result, const Capabilit
     all.crs.erase(all.crs.begin(), all.crs.begin() + 2);
   }
   all.formats = {"png32", "jpgpng", "jpg", "png"};
-  if (!containsIgnoringCase(stringAt(document, "capabilities") + ",Map,Image", "Map") || all.crs.empty()) {
+  const std::string operations = stringAt(document, "capabilities");
+  if (stringAt(document, "type").ends_with("Layer")) {
+    all.obstacle = "it is a layer of a service, whose own address is to be given";
+  } else if (!operations.empty() && !containsIgnoringCase(operations, "Map") &&
+             !containsIgnoringCase(operations, "Image")) {
+    all.obstacle = "it gives no maps but '" + operations + "'";
+  } else if (all.crs.empty()) {
     all.obstacle = "it does not say where its maps are";
   }
   result.layers.push_back(all);

@@ -79,6 +79,9 @@ TimeDimension TimeDimension::parse(std::string_view values, std::string_view def
 }
 
 void TimeDimension::addPart(std::string_view part, CalendarMilliseconds now) {
+  if (part.find_first_of(" \t\r\n") != std::string_view::npos && addApart(part, now)) {
+    return;
+  }
   if (part.find('/') != std::string_view::npos) {
     addInterval(part, now);
     return;
@@ -92,6 +95,31 @@ void TimeDimension::addPart(std::string_view part, CalendarMilliseconds now) {
   } else if (problems_.size() < mostProblems) {
     problems_.push_back("'" + std::string(part.substr(0, 60)) + "' is no time");
   }
+}
+
+bool TimeDimension::addApart(std::string_view part, CalendarMilliseconds now) {
+  const std::vector<std::string> sides = split(part, "/");
+  std::string tight;  // white space beside a slash parts nothing
+  for (const std::string& side : sides) {
+    tight += (tight.empty() ? "" : "/") + side;
+  }
+  std::vector<std::string> values = split(tight, "\r\n");
+  if (values.size() < 2) {
+    // A blank may stand between day and hour as well, so only where every piece is a value of its own.
+    values = split(tight, " \t");
+    const auto isValue = [&](const std::string& value) {
+      return readEnd(value.substr(0, value.find('/')), now).has_value();
+    };
+    const auto isSide = [&](const std::string& side) { return readEnd(side, now) || readPeriod(side); };
+    if (values.size() < 2 || !std::all_of(values.begin(), values.end(), isValue) ||
+        std::all_of(sides.begin(), sides.end(), isSide)) {
+      return false;
+    }
+  }
+  for (const std::string& value : values) {
+    addPart(value, now);
+  }
+  return true;
 }
 
 void TimeDimension::addInterval(std::string_view part, CalendarMilliseconds now) {

@@ -60,6 +60,8 @@ class TimeDimension {
   };
 
   void addPart(std::string_view part, CalendarMilliseconds now);
+  /// Values that only white space parts, as some servers write them; false where it is one value.
+  bool addApart(std::string_view part, CalendarMilliseconds now);
   void addInterval(std::string_view part, CalendarMilliseconds now);
   [[nodiscard]] Found atOrAfter(CalendarMilliseconds at) const;
 

@@ -143,6 +143,22 @@ TEST(OddWms, ManyCrsNamesTakeNoLonger) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
 }
 
+TEST(OddArcGis, ServicesWithoutMapsSaySo) {
+  const std::string extent =
+      "\"fullExtent\":{\"xmin\":0,\"ymin\":0,\"xmax\":9,\"ymax\":9,\"spatialReference\":{\"wkid\":4326}}";
+  const auto obstacle = [&](const std::string& more) {
+    const auto capabilities = parse("{" + more + extent + "}", "http://h/rest/services/A/FeatureServer?f=json");
+    EXPECT_TRUE(capabilities);
+    return capabilities ? capabilities->layers.front().obstacle : std::string();
+  };
+  EXPECT_EQ(obstacle("\"capabilities\":\"Map,Query\","), "");
+  EXPECT_EQ(obstacle("\"capabilities\":\"Image\","), "");
+  EXPECT_EQ(obstacle(""), "");
+  EXPECT_NE(obstacle("\"capabilities\":\"Query,Sync\",").find("Query,Sync"), std::string::npos);
+  EXPECT_NE(obstacle("\"capabilities\":\"Map\",\"type\":\"Feature Layer\",").find("layer of a service"),
+            std::string::npos);
+}
+
 TEST(OddXml, BytesMayBeginWithTheMarkOfUtf16) {
   for (const char* mark : {"\xFF\xFE", "\xFE\xFF"}) {
     const auto capabilities = parse(std::string(mark) +

@@ -104,6 +104,21 @@ TEST(TimeDimension, StepsThroughLists) {
   EXPECT_EQ(textOf(list.next(at("2010-06-30"))), "nothing");
 }
 
+TEST(TimeDimension, WhiteSpacePartsValuesAsWell) {
+  for (const char* text : {"2000-01-01 2000-01-02 2000-01-03", "\n  2000-01-01\n  2000-01-02\n\t2000-01-03\n",
+                           "2000-01-01,\n2000-01-02 , 2000-01-03", "2000-01-01\n2000-01-02/\n2000-01-03 / P1D\r\n"}) {
+    EXPECT_EQ(dimension(text).count(), 3U) << text;
+    EXPECT_EQ(textOf(dimension(text).next(at("2000-01-01"))), "2000-01-02") << text;
+    EXPECT_TRUE(dimension(text).problems().empty()) << text;
+  }
+  // Of a value with a blank of its own.
+  EXPECT_EQ(textOf(dimension("2000-01-01 12:00\n2000-01-02 12:00").last()), "2000-01-02 12:00");
+  EXPECT_EQ(dimension("2000-01-01 12:00:00").count(), 1U);
+  EXPECT_EQ(dimension("2000-01-01 00:00/2000-01-02 00:00/PT1H").count(), 25U);
+  EXPECT_EQ(dimension("20000101 1200/20000102 1200/PT1H").count(), 25U);
+  EXPECT_EQ(dimension("2000-01-01 12:00:00 UTC").count(), 0U);
+}
+
 TEST(TimeDimension, StepsThroughMonthsByTheCalendar) {
   const TimeDimension months = dimension("1948-01-01/1948-03-01/P1M,2015-01-31/2016-01-31/P1M");
   EXPECT_EQ(months.count(), 3U + 13U);
