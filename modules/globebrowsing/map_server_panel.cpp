@@ -20,14 +20,6 @@ std::string shortened(const std::string& text) {
   return text.size() <= mostCharacters ? text : text.substr(0, mostCharacters) + " ...";
 }
 
-std::vector<std::string> groupNames() {
-  std::vector<std::string> names;
-  for (const LayerGroupId id : allLayerGroups) {
-    names.emplace_back(name(id));
-  }
-  return names;
-}
-
 /// A label of its own for the n-th of things that may have the same name, as services' layers and styles may.
 std::string labelOf(const std::string& name, std::size_t n) {
   return fmt::format("{}##{}", name, n);
@@ -47,7 +39,8 @@ std::string freeIdentifier(const LayerGroup& group, const std::string& wanted) {
 MapServerPanel::MapServerPanel(Host& host, MapServers& servers)
     : host_(host),
       servers_(servers),
-      group_({"Group", "Group", "Of the globe's layers"}, groupNames(), static_cast<int>(LayerGroupId::ColorLayers)) {}
+      group_({"Group", "Group", "Of the globe's layers"}, layerGroupNames(),
+             static_cast<int>(LayerGroupId::ColorLayers)) {}
 
 RenderableGlobe* MapServerPanel::globe() const {
   return globe_ ? dynamic_cast<RenderableGlobe*>(host_.renderable(globe_->word())) : nullptr;

@@ -23,7 +23,7 @@ glm::vec4 textureTransform(const UnitSquareTransform& transform) {
   return glm::vec4(glm::vec2(offset), glm::vec2(scale));
 }
 
-TileDataPointer makeRelief(const Tiling& tiling, const TileIndex& index, std::vector<float> heights) {
+TileDataPointer makeRelief(const Tiling& tiling, const TileIndex& index, std::vector<float>&& heights) {
   return std::make_shared<const ReliefTile>(tiling, index, heights);
 }
 

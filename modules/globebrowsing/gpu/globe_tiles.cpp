@@ -39,10 +39,12 @@ Result<std::unique_ptr<GlobeTiles>> GlobeTiles::create(graphics::Graphics& graph
       less(colourBytes, rawTiles * Composer::bytesPerRawTile()) / Composer::bytesPerComposite(), leastComposites);
   // Of relief tiles each composite needs one; with more of them settings that move need not upload them again.
   const std::uint32_t reliefTiles = layersOfArray(options.texturePoolBytes / 16 / ReliefTextures::bytesPerTile(), 4);
-  return Composer::create(graphics, {composites, rawTiles, reliefTiles}).map([&](std::unique_ptr<Composer> composer) {
-    return std::unique_ptr<GlobeTiles>(
-        new GlobeTiles(std::move(tiling), layers, streamer, std::move(composer), surfaces, composites));
-  });
+  auto composer = Composer::create(graphics, {composites, rawTiles, reliefTiles});
+  if (!composer) {
+    return tl::make_unexpected(std::move(composer.error()));
+  }
+  return std::unique_ptr<GlobeTiles>(
+      new GlobeTiles(std::move(tiling), layers, streamer, std::move(*composer), surfaces, composites));
 }
 
 GlobeTiles::GlobeTiles(std::shared_ptr<const Tiling> tiling, LayerManager& layers, TileStreamer& streamer,

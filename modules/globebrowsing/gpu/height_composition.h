@@ -21,7 +21,7 @@ namespace meridian::globebrowsing {
 class HeightComposition {
  public:
   /// From composed heights; on a worker.
-  using Make = TileDataPointer (*)(const Tiling& tiling, const TileIndex& index, std::vector<float> heights);
+  using Make = TileDataPointer (*)(const Tiling& tiling, const TileIndex& index, std::vector<float>&& heights);
 
   /// All must outlive it. `layout` is heightLayout or reliefLayout.
   HeightComposition(std::shared_ptr<const Tiling> tiling, LayerManager& layers, TileStreamer& streamer,

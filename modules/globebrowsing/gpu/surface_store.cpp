@@ -8,7 +8,7 @@ namespace meridian::globebrowsing {
 
 namespace {
 
-TileDataPointer makeSurface(const Tiling& tiling, const TileIndex& index, std::vector<float> heights) {
+TileDataPointer makeSurface(const Tiling& tiling, const TileIndex& index, std::vector<float>&& heights) {
   return std::make_shared<const ChunkSurface>(tiling, index, std::move(heights));
 }
 

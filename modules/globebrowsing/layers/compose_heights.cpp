@@ -13,6 +13,7 @@ namespace {
 std::vector<float> enlarge(const std::vector<float>& metres, const UnitSquareTransform& within,
                            const TileLayout& layout) {
   const int size = layout.size();
+  const auto side = static_cast<std::size_t>(size);
   const glm::dvec2 origin = layout.uv(0, 0);
   const auto place = [&](double unit, double first) {
     return std::clamp((unit - first) / layout.spacing(), 0.0, size - 1.0);
@@ -24,14 +25,15 @@ std::vector<float> enlarge(const std::vector<float>& metres, const UnitSquareTra
       const glm::dvec2 uv = within.apply(layout.uv(column, row));
       const double x = place(uv.x, origin.x);
       const double y = place(uv.y, origin.y);
-      const int left = std::min(static_cast<int>(x), size - 2);
-      const int top = std::min(static_cast<int>(y), size - 2);
-      const auto at = [&](int dx, int dy) {
-        return static_cast<double>(metres[static_cast<std::size_t>((top + dy) * size + left + dx)]);
+      const auto left = std::min(static_cast<std::size_t>(x), side - 2);
+      const auto top = std::min(static_cast<std::size_t>(y), side - 2);
+      const auto at = [&](std::size_t dx, std::size_t dy) {
+        return static_cast<double>(metres[(top + dy) * side + left + dx]);
       };
-      const double upper = std::lerp(at(0, 0), at(1, 0), x - left);
-      const double lower = std::lerp(at(0, 1), at(1, 1), x - left);
-      enlarged.push_back(static_cast<float>(std::lerp(upper, lower, y - top)));
+      const double right = x - static_cast<double>(left);
+      const double upper = std::lerp(at(0, 0), at(1, 0), right);
+      const double lower = std::lerp(at(0, 1), at(1, 1), right);
+      enlarged.push_back(static_cast<float>(std::lerp(upper, lower, y - static_cast<double>(top))));
     }
   }
   return enlarged;

@@ -40,6 +40,11 @@ std::string_view name(Sampling sampling) {
   return names[static_cast<std::size_t>(sampling)];
 }
 
+const std::vector<std::string>& layerGroupNames() {
+  static const std::vector<std::string> names(groupNames.begin(), groupNames.end());
+  return names;
+}
+
 const std::vector<std::string>& blendModeNames() {
   static const std::vector<std::string> names{"Normal", "Multiply", "MultiplyMix", "Add", "Subtract", "Color"};
   return names;

@@ -35,6 +35,7 @@ inline constexpr std::array<Sampling, 6> allSamplings{Sampling::Tile,      Sampl
 [[nodiscard]] std::string_view name(BlendMode mode);
 [[nodiscard]] std::string_view name(Adjustment adjustment);
 [[nodiscard]] std::string_view name(Sampling sampling);
+[[nodiscard]] const std::vector<std::string>& layerGroupNames();
 [[nodiscard]] const std::vector<std::string>& blendModeNames();
 [[nodiscard]] const std::vector<std::string>& adjustmentNames();
 

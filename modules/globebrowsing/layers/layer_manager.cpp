@@ -30,12 +30,8 @@ Result<NamedGroup> requireGroup(std::string_view group, std::string where) {
   if (const std::optional<NamedGroup> named = layerGroupFromName(group)) {
     return *named;
   }
-  std::vector<std::string_view> names;
-  for (const LayerGroupId id : allLayerGroups) {
-    names.push_back(name(id));
-  }
   return failure(fmt::format("unknown layer group \"{}\"", group), std::move(where),
-                 fmt::format("use one of: {}", fmt::join(names, ", ")));
+                 fmt::format("use one of: {}", fmt::join(layerGroupNames(), ", ")));
 }
 
 }  // namespace
