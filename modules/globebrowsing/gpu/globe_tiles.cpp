@@ -131,7 +131,7 @@ SurfaceErrors GlobeTiles::surfaceErrors(const TileIndex& index) const {
     errors.vertical[place] = curvature * curvatureLeft + relief * reliefLeft;
     errors.along[place] = nearest.surface->drift(step) * curvatureLeft;
   }
-  errors.unlike = nearest.isOdd ? surfaces_.highestHeight() - surfaces_.lowestHeight() : 0.0;
+  errors.unlike = nearest.isUnlike ? surfaces_.highestHeight() - surfaces_.lowestHeight() : 0.0;
   return errors;
 }
 

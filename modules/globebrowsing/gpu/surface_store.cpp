@@ -90,8 +90,8 @@ SurfaceStore::Nearest SurfaceStore::nearest(const TileIndex& index) const {
   while (at) {
     if (const auto found = resident_.find(*at); found != resident_.end()) {
       const Resident& resident = found->second;
-      const bool isOdd = resident.lack > 0 || resident.stream != heights_.stream();
-      return {resident.surface.get(), at->level, resident.stamp, isOdd};
+      const bool isUnlike = resident.lack > 0 || resident.stream != heights_.stream();
+      return {resident.surface.get(), at->level, resident.stamp, isUnlike};
     }
     at = tiling_->parent(*at);
   }

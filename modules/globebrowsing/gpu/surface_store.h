@@ -42,8 +42,8 @@ class SurfaceStore {
   struct Nearest {
     const ChunkSurface* surface = nullptr;  ///< null when not even the root has one
     int level = 0;
-    unsigned stamp = 0;  ///< of its arrival: equal stamps mean the same surface; 0 for none
-    bool isOdd = false;  ///< it lacks what is late, or shows earlier heights: neighbours may be made from other data
+    unsigned stamp = 0;     ///< of its arrival: equal stamps mean the same surface; 0 for none
+    bool isUnlike = false;  ///< it lacks what is late, or shows earlier heights: neighbours may be made from other data
   };
   [[nodiscard]] Nearest nearest(const TileIndex& index) const;
   /// Whether some enabled height layer has finer data within the tile than its surface shows. No input or output.

@@ -7,9 +7,6 @@ namespace meridian::globebrowsing {
 
 namespace {
 
-constexpr std::array<std::string_view, layerGroupCount> groupNames{"HeightLayers", "ColorLayers", "Overlays",
-                                                                   "NightLayers", "WaterMasks"};
-
 /// The groups that OpenSpace had until 2017.
 constexpr std::array<std::pair<std::string_view, NamedGroup>, 3> olderGroups{{
     {"ColorOverlays", {LayerGroupId::Overlays, BlendMode::Normal}},
@@ -26,7 +23,7 @@ std::optional<Enum> fromName(const Names& names, std::string_view name) {
 }  // namespace
 
 std::string_view name(LayerGroupId group) {
-  return groupNames[static_cast<std::size_t>(group)];
+  return layerGroupNames()[static_cast<std::size_t>(group)];
 }
 std::string_view name(BlendMode mode) {
   return blendModeNames()[static_cast<std::size_t>(mode)];
@@ -41,7 +38,7 @@ std::string_view name(Sampling sampling) {
 }
 
 const std::vector<std::string>& layerGroupNames() {
-  static const std::vector<std::string> names(groupNames.begin(), groupNames.end());
+  static const std::vector<std::string> names{"HeightLayers", "ColorLayers", "Overlays", "NightLayers", "WaterMasks"};
   return names;
 }
 
@@ -56,7 +53,7 @@ const std::vector<std::string>& adjustmentNames() {
 }
 
 std::optional<NamedGroup> layerGroupFromName(std::string_view name) {
-  if (const auto group = fromName<LayerGroupId>(groupNames, name)) {
+  if (const auto group = fromName<LayerGroupId>(layerGroupNames(), name)) {
     return NamedGroup{*group, BlendMode::Normal};
   }
   const auto older =

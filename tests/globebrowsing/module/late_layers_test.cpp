@@ -36,21 +36,27 @@ class LateLayersTest : public GlobeTest {
     return std::equal(seen.begin(), seen.end(), expected.begin(), [](int a, int b) { return std::abs(a - b) <= 4; });
   }
 
+  /// A layer of one colour on disk below the server's; the lower one.
+  Layer& addLocalUnderWorld() {
+    RenderableGlobe& globe =
+        addGlobe({{"ColorLayers",
+                   listOf({fileLayer("Local", uniformRaster("local.tif", local)), fileLayer("World", document_)})}});
+    return *globe.layers().group(LayerGroupId::ColorLayers).find("Local");
+  }
+
+  static constexpr Pixel local{200, 30, 90};
   const int port_ = freePort();
   std::string document_;
   std::unique_ptr<ServerProcess> server_;
 };
 
 TEST_F(LateLayersTest, OtherColoursShowUntilTheServerIsThere) {
-  const Pixel local{200, 30, 90};
-  RenderableGlobe& globe =
-      addGlobe({{"ColorLayers",
-                 listOf({fileLayer("Local", uniformRaster("local.tif", local)), fileLayer("World", document_)})}});
+  Layer& localLayer = addLocalUnderWorld();
   ASSERT_TRUE(framesUntil([&] { return shows(local); }));
   EXPECT_NE(unsettled(), "");
   look(0.4, 1.2, 8e6);  // tiles that nobody has asked for yet
   ASSERT_TRUE(framesUntil([&] { return shows(local); }));
-  globe.layers().group(LayerGroupId::ColorLayers).find("Local")->multiplier.put(0.5);
+  localLayer.multiplier.put(0.5);
   ASSERT_TRUE(framesUntil([&] { return shows({100, 15, 45}); })) << "a layer can be adjusted meanwhile";
   EXPECT_NE(unsettled(), "");
 
@@ -60,7 +66,6 @@ TEST_F(LateLayersTest, OtherColoursShowUntilTheServerIsThere) {
 }
 
 TEST_F(LateLayersTest, WhatTheServerSentBeforeStandsInForWhatIsMissing) {
-  const Pixel local{200, 30, 90};
   RenderableGlobe& globe = addGlobe(
       {{"ColorLayers", listOf({fileLayer("World", document_),
                                fileLayer("Local", uniformRaster("local.tif", local, 4096), {{"Enabled", false}})})}});
@@ -80,17 +85,13 @@ TEST_F(LateLayersTest, WhatTheServerSentBeforeStandsInForWhatIsMissing) {
 }
 
 TEST_F(LateLayersTest, AToggleShowsThoughNothingOfTheOthersIsThere) {
-  const Pixel local{200, 30, 90};
-  RenderableGlobe& globe =
-      addGlobe({{"ColorLayers",
-                 listOf({fileLayer("Local", uniformRaster("local.tif", local)), fileLayer("World", document_)})}});
+  Layer& localLayer = addLocalUnderWorld();
   ASSERT_TRUE(framesUntil([&] { return shows(local); }));
-  globe.layers().group(LayerGroupId::ColorLayers).find("Local")->enabled.put(false);
+  localLayer.enabled.put(false);
   EXPECT_TRUE(framesUntil([&] { return !shows(local); }));
 }
 
 TEST_F(LateLayersTest, ALayerOfTimesHoldsUpNoOtherEither) {
-  const Pixel local{200, 30, 90};
   const TimedPyramid pyramid{.days = 2, .levels = 2};
   std::filesystem::create_directories(folder_ / "tiles");
   pyramid.write(folder_ / "tiles", "http://127.0.0.1:" + std::to_string(port_));
@@ -115,7 +116,6 @@ TEST_F(LateLayersTest, ALayerOfTimesHoldsUpNoOtherEither) {
 }
 
 TEST_F(LateLayersTest, TheGlobeMovesToAnotherPoolAllTheSame) {
-  const Pixel local{200, 30, 90};
   addGlobe({{"ColorLayers",
              listOf({fileLayer("World", document_), fileLayer("Local", uniformRaster("local.tif", local))})}});
   ASSERT_TRUE(framesUntil([&] { return shows(local); }));
@@ -130,7 +130,6 @@ TEST_F(LateLayersTest, TheGlobeMovesToAnotherPoolAllTheSame) {
 }
 
 TEST_F(LateLayersTest, TheGlobeIsSmoothUntilItsHeightsAreThere) {
-  const Pixel local{200, 30, 90};
   RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({fileLayer("Local", uniformRaster("local.tif", local))})},
                                      {"HeightLayers", listOf({fileLayer("World", document_)})}});
   look(0.4, 1.2, 8e6);
