@@ -1,11 +1,12 @@
 #include "globebrowsing/streaming/worker_pool.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <exception>
+#include <system_error>
 #include <utility>
 
-#include <pthread.h>
-#include <sched.h>
+#include <sys/resource.h>
 
 #include "host/api/log.h"
 
@@ -13,10 +14,10 @@ namespace meridian::globebrowsing {
 
 namespace {
 
-void sinkToIdlePriority() {
-  const sched_param parameters{};
-  if (const int code = pthread_setschedparam(pthread_self(), SCHED_IDLE, &parameters); code != 0) {
-    log::debug("a worker stays at normal priority: pthread_setschedparam gave {}", code);
+/// On Linux both calls are about the calling thread alone.
+void lowerPriority() {
+  if (setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + WorkerPool::niceness) != 0) {
+    log::debug("a worker stays at normal priority: {}", std::generic_category().message(errno));
   }
 }
 
@@ -80,7 +81,7 @@ void WorkerPool::stop() {
 }
 
 void WorkerPool::work() {
-  sinkToIdlePriority();
+  lowerPriority();
   const std::stop_token stop = stopping_.get_token();
   std::unique_lock lock(mutex_);
   while (true) {

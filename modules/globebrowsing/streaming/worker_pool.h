@@ -11,13 +11,17 @@
 
 namespace meridian::globebrowsing {
 
-/// Threads at idle scheduling priority (SCHED_IDLE), so that the render thread gets a core whenever it wants one.
+/// Threads nicer than the one that made the pool, so that the render thread gets a core whenever it wants one. Not at
+/// idle priority (SCHED_IDLE): that gets next to nothing while other programs use all cores, and pictures stay coarse.
 /// First posted, first served; who needs an order of its own posts a task that takes its best job (TileStreamer).
 ///
 /// Safe from any thread. Exceptions end in the log, never in a thread's end.
 class WorkerPool {
  public:
   using Task = std::function<void(const std::stop_token&)>;
+
+  /// About a tenth of the render thread's share, where both want the same core.
+  static constexpr int niceness = 10;
 
   /// One less than the machine has cores, but at least one.
   [[nodiscard]] static std::size_t defaultSize();
