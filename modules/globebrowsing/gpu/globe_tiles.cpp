@@ -88,18 +88,17 @@ TileResidency::State GlobeTiles::state(const TileIndex& index, int colourLevel) 
 }
 
 HeightRange GlobeTiles::heightRange(const TileIndex& index) const {
-  const SurfaceStore::Nearest nearest = surfaces_.nearest(index);
-  if (nearest.surface == nullptr) {
+  const SurfaceStore::KnownRange known = surfaces_.nearestRange(index);
+  if (known.level < 0) {
     const double relief = unknownRelief * tiling_->ellipsoid().minimumRadius();
     return {-relief, relief};
   }
-  const HeightRange range = nearest.surface->heightRange();
-  const double margin = hiddenRelief * (range.maximum - range.minimum);
-  return {range.minimum - margin, range.maximum + margin};
+  const double margin = hiddenRelief * (known.range.maximum - known.range.minimum);
+  return {known.range.minimum - margin, known.range.maximum + margin};
 }
 
 unsigned GlobeTiles::heightVersion(const TileIndex& index) const {
-  return surfaces_.nearest(index).stamp;
+  return surfaces_.nearestRange(index).stamp;
 }
 
 SurfaceErrors GlobeTiles::surfaceErrors(const TileIndex& index) const {

@@ -27,7 +27,11 @@ SurfaceStore::SurfaceStore(std::shared_ptr<const Tiling> tiling, LayerManager& l
 void SurfaceStore::beginFrame(std::uint64_t frame) {
   frame_ = frame;
   arrivals_.clear();
+  const std::uint32_t before = heights_.stream();
   heights_.beginFrame();
+  if (heights_.stream() != before || evicted_.size() > mostEvicted) {
+    evicted_.clear();
+  }
 }
 
 bool SurfaceStore::want(const TileIndex& index, double priority) {
@@ -66,7 +70,7 @@ void SurfaceStore::upload(graphics::UploadBudget& budget) {
 bool SurfaceStore::place(const Arrival& arrival) {
   std::optional<std::uint32_t> slot = pool_.slots().use(arrival.index, frame_);
   if (!slot) {
-    slot = pool_.slots().take(arrival.index, frame_, [this](const TileIndex& evicted) { resident_.erase(evicted); });
+    slot = pool_.slots().take(arrival.index, frame_, [this](const TileIndex& evicted) { evict(evicted); });
   }
   if (!slot) {
     return false;
@@ -76,8 +80,18 @@ bool SurfaceStore::place(const Arrival& arrival) {
   lowest_ = std::min(lowest_, surface->heightRange().minimum);
   highest_ = std::max(highest_, surface->heightRange().maximum);
   resident_[arrival.index] = {std::move(surface), heights_.stream(), ++lastStamp_, arrival.lack};
+  evicted_.erase(arrival.index);
   deepest_ = std::max(deepest_, int{arrival.index.level});
   return true;
+}
+
+void SurfaceStore::evict(const TileIndex& index) {
+  const auto gone = resident_.find(index);
+  const Resident& resident = gone->second;
+  if (resident.stream == heights_.stream() && resident.lack == 0) {
+    evicted_[index] = {resident.surface->heightRange(), index.level, resident.stamp};
+  }
+  resident_.erase(gone);
 }
 
 const ChunkSurface* SurfaceStore::find(const TileIndex& index) const {
@@ -92,6 +106,20 @@ SurfaceStore::Nearest SurfaceStore::nearest(const TileIndex& index) const {
       const Resident& resident = found->second;
       const bool isUnlike = resident.lack > 0 || resident.stream != heights_.stream();
       return {resident.surface.get(), at->level, resident.stamp, isUnlike};
+    }
+    at = tiling_->parent(*at);
+  }
+  return {};
+}
+
+SurfaceStore::KnownRange SurfaceStore::nearestRange(const TileIndex& index) const {
+  std::optional<TileIndex> at = index;
+  while (at) {
+    if (const auto found = resident_.find(*at); found != resident_.end()) {
+      return {found->second.surface->heightRange(), at->level, found->second.stamp};
+    }
+    if (const auto found = evicted_.find(*at); found != evicted_.end()) {
+      return found->second;
     }
     at = tiling_->parent(*at);
   }

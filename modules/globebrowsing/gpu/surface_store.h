@@ -46,6 +46,15 @@ class SurfaceStore {
     bool isUnlike = false;  ///< it lacks what is late, or shows earlier heights: neighbours may be made from other data
   };
   [[nodiscard]] Nearest nearest(const TileIndex& index) const;
+  /// The heights of the tile, or of its nearest ancestor of which any are known. They stay known when the surface makes
+  /// room for another: tiles that are culled by their own heights, but not by an ancestor's, would else be wanted again
+  /// as soon as they are gone, and take each other's place in a full pool for ever.
+  struct KnownRange {
+    HeightRange range;
+    int level = -1;      ///< -1: not even the root's are known
+    unsigned stamp = 0;  ///< equal stamps mean equal heights; 0 for none
+  };
+  [[nodiscard]] KnownRange nearestRange(const TileIndex& index) const;
   /// Whether some enabled height layer has finer data within the tile than its surface shows. No input or output.
   [[nodiscard]] bool hasFinerHeights(const TileIndex& index) const { return heights_.hasFiner(index); }
   /// No resident surface is deeper.
@@ -62,6 +71,8 @@ class SurfaceStore {
   [[nodiscard]] std::string waitingFor() const;
 
  private:
+  /// Ranges of tiles long gone are dropped when there are that many.
+  static constexpr std::size_t mostEvicted = 1 << 15;
   struct Resident {
     std::shared_ptr<const ChunkSurface> surface;
     std::uint32_t stream = 0;
@@ -77,12 +88,14 @@ class SurfaceStore {
 
   /// False when the pool is full.
   bool place(const Arrival& arrival);
+  void evict(const TileIndex& index);
 
   std::shared_ptr<const Tiling> tiling_;
   LayerManager& layers_;
   HeightComposition heights_;
   SurfacePool pool_;
   std::unordered_map<TileIndex, Resident> resident_;
+  std::unordered_map<TileIndex, KnownRange> evicted_;  ///< of the present heights, and complete
   std::vector<Arrival> arrivals_;
   std::uint64_t frame_ = 0;
   unsigned lastStamp_ = 0;

@@ -1,5 +1,7 @@
 #include "globebrowsing/surface/height_query.h"
 
+#include <map>
+
 #include "../module/globe_fixture.h"
 #include "globebrowsing/surface/chunked_surface.h"
 #include "globebrowsing/tiling/geodetic_tiling.h"
@@ -101,6 +103,32 @@ TEST_F(HeightQueryTest, SurfacesOfNeighboursAgreeOnTheirSharedNodes) {
     }
   }
   EXPECT_GT(compared, 0);
+}
+
+// Else a tile that its own heights cull, but not those of an ancestor, is wanted again as soon as it is gone: in a full
+// pool such tiles took turns, and the view was never complete.
+TEST_F(HeightQueryTest, HeightsOfEvictedTilesStayKnown) {
+  setModuleProperty("TexturePoolSize", 64);
+  ASSERT_TRUE(settle());
+  const auto& tiles = dynamic_cast<ChunkedSurface&>(*globe_->surface()).tiles();
+  std::map<TileIndex, SurfaceStore::KnownRange> before;
+  for (const SelectedChunk& chunk : dynamic_cast<ChunkedSurface&>(*globe_->surface()).selected()) {
+    before[chunk.index] = tiles.surfaces().nearestRange(chunk.index);
+  }
+  for (double longitude = 60.0; longitude < 340.0; longitude += 20.0) {
+    look(-50.0 * degree, longitude * degree, 6.9e6);
+    ASSERT_TRUE(settle());
+  }
+  int evicted = 0;
+  for (const auto& [index, known] : before) {
+    const SurfaceStore::KnownRange now = tiles.surfaces().nearestRange(index);
+    EXPECT_EQ(now.level, index.level);
+    EXPECT_EQ(now.stamp, known.stamp);
+    EXPECT_EQ(now.range.minimum, known.range.minimum);
+    EXPECT_EQ(now.range.maximum, known.range.maximum);
+    evicted += tiles.surfaces().find(index) == nullptr ? 1 : 0;
+  }
+  EXPECT_GT(evicted, 0);
 }
 
 TEST_F(HeightQueryTest, SkirtsReachBelowEveryGapAndViewsSeeOnlyTheirChunks) {
