@@ -254,6 +254,24 @@ TEST(Wmts, StylesFormatsAndDimensionsFillTheAddress) {
   EXPECT_EQ(service.matrices.back().lastColumn, 1);
 }
 
+TEST(Wmts, RelativeAddressesAreSeenFromTheDocument) {
+  for (const char* address :
+       {"../tiles/{TileMatrix}/{TileRow}/{TileCol}.png", "/a/x/../b/../tiles/./{TileMatrix}/{TileRow}/{TileCol}.png",
+        "tiles/../../tiles/{TileMatrix}/{TileRow}/{TileCol}.png"}) {
+    const auto capabilities = parse(
+        "<Capabilities><Contents><Layer><Identifier>a</Identifier><TileMatrixSetLink><TileMatrixSet>s</TileMatrixSet>"
+        "</TileMatrixSetLink><ResourceURL resourceType=\"tile\" format=\"image/png\" template=\"" +
+            std::string(address) +
+            "\"/></Layer><TileMatrixSet><Identifier>s</Identifier><SupportedCRS>EPSG:4326</SupportedCRS><TileMatrix>"
+            "<Identifier>0</Identifier><ScaleDenominator>279541132.0143589</ScaleDenominator><TopLeftCorner>90 -180"
+            "</TopLeftCorner><TileWidth>256</TileWidth><TileHeight>256</TileHeight><MatrixWidth>2</MatrixWidth>"
+            "<MatrixHeight>1</MatrixHeight></TileMatrix></TileMatrixSet></Contents></Capabilities>",
+        "http://h/a/1.0.0/WMTSCapabilities.xml");
+    ASSERT_TRUE(capabilities) << capabilities.error().message();
+    EXPECT_EQ(serviceOfLayer(*capabilities, "a").url({0, 1, 0}), "http://h/a/tiles/0/0/1.png") << address;
+  }
+}
+
 TEST(Wmts, GibsSetsAreThoseOfAllProjections) {
   const Capabilities sets = realCapabilities("gibs_tilematrixsets_all_projections.xml");
   if (sets.matrixSets.empty()) {
