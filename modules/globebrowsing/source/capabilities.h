@@ -90,7 +90,9 @@ struct CapabilitiesLayer {
   std::string document{};
 
   // For serviceOf.
-  std::vector<std::pair<std::string, Extent>> boundingBoxes{};  ///< by CRS name, easting first, in its units
+  /// By CRS name, in its units. Of maps: in the document's order of axes. Of tiles: easting first, and only where they
+  /// alone give the extent.
+  std::vector<std::pair<std::string, Extent>> boundingBoxes{};
   std::vector<MatrixSetLink> matrixSets{};
   std::vector<AddressTemplate> addresses{};
   double coarsestPixelMetres = 0.0;  ///< maps of larger and smaller pixels are empty; 0: not said

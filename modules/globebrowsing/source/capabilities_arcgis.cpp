@@ -107,9 +107,7 @@ void readPlace(const Json& document, CapabilitiesLayer& layer, const std::string
     return;
   }
   layer.boundingBoxes.emplace_back(name, *box);
-  if (const auto degrees = crs->toDegrees(*box)) {
-    layer.extent = extentFromDegrees(*degrees);
-  }
+  layer.extent = extentOfBox(*crs, *box);
 }
 
 /// Levels that hold tiles: by number where the service says so, else by scale.

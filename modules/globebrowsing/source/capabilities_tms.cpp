@@ -142,9 +142,7 @@ Result<Capabilities> readTileMap(const XmlDocument& document, Capabilities resul
   layer.title = result.title;
   layer.abstract = result.abstract;
   layer.identifier = result.title.empty() ? "tiles" : result.title;
-  if (const auto degrees = place->crs.toDegrees(place->box)) {
-    layer.extent = extentFromDegrees(*degrees);
-  }
+  layer.extent = extentOfBox(place->crs, place->box);
   const std::string extension = attribute(child(root, "TileFormat"), "extension");
   const std::string mime = attribute(child(root, "TileFormat"), "mime-type");
   layer.formats.push_back(mime.empty() ? extension : mime);

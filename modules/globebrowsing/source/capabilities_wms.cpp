@@ -170,6 +170,12 @@ class WmsReader {
                      [](const auto& a, const auto& b) { return a.first == b.first; });
       }
     }
+    // Where no degrees are given or inherited, by the first box that has some.
+    for (auto box = layer.boundingBoxes.begin(); box != layer.boundingBoxes.end() && !layer.extent; ++box) {
+      if (const auto crs = MapCrs::of(box->first, document_.where())) {
+        layer.extent = extentOfBox(*crs, isThree_ && crs->isNorthingFirst() ? axesExchanged(box->second) : box->second);
+      }
+    }
   }
 
   static void readDimensions(const pugi::xml_node& node, CapabilitiesLayer& layer) {

@@ -227,13 +227,9 @@ Result<ServiceDescription> describeGetMap(const std::string& url, const std::str
   if (box.size() == 4) {
     const bool isTurned = isWmsThree(version) && known->isNorthingFirst();
     const auto side = [&](std::size_t i) { return number(box[i]).value_or(0.0); };
-    const Extent extent =
-        isTurned ? Extent{side(1), side(0), side(3), side(2)} : Extent{side(0), side(1), side(2), side(3)};
-    layer.boundingBoxes = {
-        {layer.crs.front(), isTurned ? Extent{extent.south, extent.west, extent.north, extent.east} : extent}};
-    if (const auto degrees = known->toDegrees(extent)) {
-      layer.extent = extentFromDegrees(*degrees);
-    }
+    const Extent extent{side(0), side(1), side(2), side(3)};
+    layer.boundingBoxes = {{layer.crs.front(), extent}};
+    layer.extent = extentOfBox(*known, isTurned ? axesExchanged(extent) : extent);
   }
   LayerChoices choices;
   choices.isTransparent = boolean(parameter("transparent")).value_or(false);

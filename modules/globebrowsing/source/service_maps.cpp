@@ -58,7 +58,7 @@ std::optional<Extent> extentIn(const CapabilitiesLayer& layer, const std::string
   for (const auto& [boxCrs, box] : layer.boundingBoxes) {
     if (boxCrs == name || canonicalCrsName(boxCrs) == canonicalCrsName(name)) {
       const bool isTurned = isAxisOrdered && crs.isNorthingFirst();
-      const Extent upright = isTurned ? Extent{box.south, box.west, box.north, box.east} : box;
+      const Extent upright = isTurned ? axesExchanged(box) : box;
       if (upright.west < upright.east && upright.south < upright.north) {
         return upright;
       }
@@ -80,6 +80,7 @@ Result<MapPlace> choosePlace(const Capabilities& capabilities, const Capabilitie
                      "choose one of: " + joined(layer.crs, ", ").substr(0, 300));
     }
   }
+  const bool isAxisOrdered = capabilities.kind == CapabilitiesKind::Wms && isWmsThree(capabilities.version);
   std::optional<Error> last;
   constexpr std::size_t mostTries = 50;
   for (std::size_t i = 0; i < std::min(names.size(), mostTries); ++i) {
@@ -88,7 +89,7 @@ Result<MapPlace> choosePlace(const Capabilities& capabilities, const Capabilitie
       last = std::move(crs.error());
       continue;
     }
-    if (const auto extent = extentIn(layer, names[i], *crs, isWmsThree(capabilities.version))) {
+    if (const auto extent = extentIn(layer, names[i], *crs, isAxisOrdered)) {
       return MapPlace{names[i], std::move(*crs), *extent};
     }
   }
@@ -169,7 +170,7 @@ Result<QueryParameters> mapParameters(const Capabilities& capabilities, const Ca
 Result<QueryParameters> exportParameters(const CapabilitiesLayer& layer, const LayerChoices& choices,
                                          const MapPlace& place, const std::string& where) {
   QueryParameters parameters{{"bbox", "{West},{South},{East},{North}"}, {"size", "{Width},{Height}"}};
-  const std::string code = place.name.substr(std::min(place.name.find(':'), place.name.size() - 1) + 1);
+  const std::string code = place.name.substr(place.name.find(':') + 1);
   parameters.emplace_back("bboxSR", percentEncoded(code));
   parameters.emplace_back("imageSR", percentEncoded(code));
   parameters.emplace_back("format", choices.format.empty() ? "png32" : percentEncoded(choices.format));
