@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "globebrowsing/source/crs_names.h"
 #include "globebrowsing/source/map_crs.h"
 #include "globebrowsing/source/tile_service.h"
 #include "host/api/error.h"
@@ -80,7 +81,7 @@ struct CapabilitiesLayer {
   std::optional<Extent> extent{};      ///< radians; west may be beyond -pi, east beyond pi
   std::vector<LayerStyle> styles{};    ///< the default first
   std::vector<std::string> formats{};  ///< as the service spells them, best for us first
-  std::vector<std::string> crs{};      ///< names of CRSs that maps can be asked in
+  CrsNames crs{};                      ///< that maps can be asked in
   std::vector<LayerDimension> dimensions{};
   std::string attribution{};
   bool isOpaque = false;

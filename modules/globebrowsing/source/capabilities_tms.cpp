@@ -173,7 +173,7 @@ Result<Capabilities> readList(const XmlDocument& document, Capabilities result) 
     layer.document = resolvedUrl(document.where(), repairedUrl(attribute(entry, "href")));
     layer.obstacle = "it is described by a document of its own, " + layer.document;
     if (const std::string srs = attribute(entry, "srs"); !srs.empty()) {
-      layer.crs.push_back(srs);
+      layer.crs = CrsNames({srs});
     }
     result.layers.push_back(std::move(layer));
   }

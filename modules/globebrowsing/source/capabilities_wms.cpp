@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
-#include <unordered_set>
 
 #include "globebrowsing/source/capabilities_parts.h"
 #include "globebrowsing/source/service_text.h"
@@ -134,20 +134,14 @@ class WmsReader {
   }
 
   static void readCrsNames(const pugi::xml_node& node, CapabilitiesLayer& layer) {
-    std::unordered_set<std::string> known;  // there may be thousands
+    std::vector<std::string> names;
     for (const pugi::xml_node& entry : node.children()) {
-      if (!isNamed(entry, "SRS") && !isNamed(entry, "CRS")) {
-        continue;
-      }
-      if (known.empty()) {
-        known.insert(layer.crs.begin(), layer.crs.end());
-      }
-      for (std::string& name : split(text(entry), " \t\r\n,")) {
-        if (known.insert(name).second) {
-          layer.crs.push_back(std::move(name));
-        }
+      if (isNamed(entry, "SRS") || isNamed(entry, "CRS")) {
+        std::vector<std::string> some = split(text(entry), " \t\r\n,");
+        names.insert(names.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
       }
     }
+    layer.crs = layer.crs.with(std::move(names));
   }
 
   void readPlaces(const pugi::xml_node& node, CapabilitiesLayer& layer) {

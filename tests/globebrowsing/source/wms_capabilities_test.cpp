@@ -3,6 +3,7 @@
 #include "globebrowsing/source/capabilities.h"
 #include "globebrowsing/source/service_text.h"
 #include "service_fixture.h"
+#include "support/allocation_count.h"
 
 namespace meridian::globebrowsing {
 namespace {
@@ -19,7 +20,7 @@ TEST(Ledger, NoMapIsAskedForThatTheWmsForbids) {
     SCOPED_TRACE(file);
     const Capabilities capabilities = realCapabilities(file);
     for (const CapabilitiesLayer& layer : capabilities.layers) {
-      for (const std::string& crs : layer.crs) {
+      for (const std::string& crs : layer.crs.names()) {
         LayerChoices choices;
         choices.crs = crs;
         const auto service =
@@ -127,7 +128,7 @@ TEST(Wms, LayersInherit) {
   ASSERT_TRUE(capabilities);
   ASSERT_EQ(capabilities->layers.size(), 3U);
   const CapabilitiesLayer& b = *capabilities->find("b");
-  EXPECT_EQ(b.crs, (std::vector<std::string>{"EPSG:4326", "EPSG:3857", "EPSG:3031"}));
+  EXPECT_EQ(b.crs.names(), (std::vector<std::string>{"EPSG:4326", "EPSG:3031", "EPSG:3857"}));
   EXPECT_EQ(b.path, (std::vector<std::string>{"Root", "A"}));
   EXPECT_EQ(b.styles.size(), 2U);
   EXPECT_EQ(b.attribution, "Me");
@@ -143,6 +144,38 @@ TEST(Wms, LayersInherit) {
   EXPECT_NE(url.find("FORMAT=image/jpeg"), std::string::npos) << url;  // opaque
   EXPECT_NE(url.find("TIME=2005"), std::string::npos) << url;          // it names no default
   EXPECT_FALSE(capabilities->layers[0].obstacle.empty());
+}
+
+/// Allocations for a document whose layers inherit so many CRSs and have one of their own besides, and for its
+/// services.
+std::size_t allocationsFor(int layers, int names) {
+  std::string document = "<Layer><Title>Root</Title>" + worldBox;
+  for (int name = 0; name < names; ++name) {  // too long for a string without an allocation
+    document += "<CRS>urn:ogc:def:crs:EPSG::" + std::to_string(100'000 + name) + "</CRS>";
+  }
+  for (int layer = 0; layer < layers; ++layer) {
+    const std::string number = std::to_string(1000 + layer);
+    document +=
+        "<Layer><Name>" + number + "</Name><CRS>urn:ogc:def:crs:X::" + number + "</CRS><CRS>CRS:84</CRS></Layer>";
+  }
+  document = wms("1.3.0", document + "</Layer>");
+  const std::size_t before = allocationsOfThisThread();
+  const auto capabilities = parse(document);
+  EXPECT_TRUE(capabilities);
+  for (int layer = 0; layer < layers; ++layer) {
+    const CapabilitiesLayer& read = capabilities->layers[static_cast<std::size_t>(layer) + 1];
+    EXPECT_TRUE(serviceOf(*capabilities, read));
+    EXPECT_TRUE(read.crs.contains("urn:ogc:def:crs:X::" + read.identifier));
+  }
+  return allocationsOfThisThread() - before;
+}
+
+// GeoServer lists thousands of CRSs, and all its layers inherit them: the names are there once.
+TEST(Wms, LayersShareTheCrsNamesThatTheyInherit) {
+  constexpr int few = 100;  // and more than are looked at for a service
+  const std::size_t oneLayer = allocationsFor(1, 2000) - allocationsFor(1, few);
+  const std::size_t manyLayers = allocationsFor(100, 2000) - allocationsFor(100, few);
+  EXPECT_LT(manyLayers, 2 * oneLayer);
 }
 
 TEST(Wms, ChoicesAreKeptToWhatThereIs) {
