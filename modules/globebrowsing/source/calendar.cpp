@@ -93,18 +93,74 @@ struct Parts {
   std::int64_t zoneMinutes = 0;
 };
 
+constexpr std::int64_t furthestYear = 20'000;
+
+/// The Monday of a year's first week, which is the one with January 4.
+CalendarMilliseconds firstMonday(std::int64_t year) {
+  using namespace std::chrono;
+  const sys_days fourth = std::chrono::year(static_cast<int>(year)) / 1 / 4;
+  return (fourth - (weekday(fourth) - Monday)).time_since_epoch().count() * day;
+}
+
+void setDate(Parts& parts, CalendarMilliseconds at) {
+  const Date date = dateOf(at);
+  parts.year = date.year;
+  parts.month = date.month;
+  parts.day = date.day;
+}
+
+/// What follows the W.
+bool readWeek(Reader& reader, Parts& parts, CalendarStyle& style) {
+  style.form = CalendarForm::WeekAndDay;
+  style.parts = 2;
+  const auto week = reader.digits(2);
+  std::optional<std::int64_t> ofWeek = 1;
+  if (style.isBasic ? reader.digitsAhead() > 0 : reader.take("-")) {
+    ofWeek = reader.digits(1);
+    style.parts = 3;
+  }
+  if (!week || *week < 1 || !ofWeek || *ofWeek < 1 || *ofWeek > 7 || std::abs(parts.year) > furthestYear) {
+    return false;
+  }
+  const CalendarMilliseconds monday = firstMonday(parts.year) + (*week - 1) * 7 * day;
+  const bool hasWeek = monday < firstMonday(parts.year + 1);
+  setDate(parts, monday + (*ofWeek - 1) * day);
+  return hasWeek;
+}
+
+bool readDayOfYear(Reader& reader, Parts& parts, CalendarStyle& style) {
+  style.form = CalendarForm::DayOfYear;
+  style.parts = 3;
+  const std::int64_t year = parts.year;
+  const auto ofYear = reader.digits(3);
+  if (!ofYear || *ofYear < 1 || std::abs(year) > furthestYear) {
+    return false;
+  }
+  setDate(parts, fromDate(year, 1, 1) + (*ofYear - 1) * day);
+  return parts.year == year;
+}
+
 bool readDate(Reader& reader, Parts& parts, CalendarStyle& style) {
   const bool isNegative = reader.take("-");
   const std::size_t ahead = reader.digitsAhead();
-  style.isBasic = ahead == 8 || (ahead > 8 && !isNegative) || ahead == 6;
+  style.isBasic = (ahead >= 6 && ahead <= 8) || (ahead > 8 && !isNegative);
   const auto year = reader.digits(style.isBasic || ahead < 4 ? 4 : ahead);
   if (!year || (ahead != 4 && ahead != 5 && !style.isBasic)) {
     return false;
   }
   parts.year = isNegative ? -*year : *year;
   style.parts = 1;
+  const bool hasDash = !style.isBasic && reader.take("-");
+  if (!style.isBasic && reader.take("Ww")) {
+    style.isBasic = !hasDash;
+    return readWeek(reader, parts, style);
+  }
+  if ((style.isBasic || hasDash) && reader.digitsAhead() == 3) {
+    return readDayOfYear(reader, parts, style);
+  }
   for (std::int64_t* part : {&parts.month, &parts.day}) {
-    if (style.isBasic ? reader.digitsAhead() < 2 : !reader.take("-")) {
+    const bool isFirst = part == &parts.month;
+    if (style.isBasic ? reader.digitsAhead() < 2 : !(isFirst ? hasDash : reader.take("-"))) {
       return true;
     }
     const auto value = reader.digits(2);
@@ -171,10 +227,42 @@ bool readZone(Reader& reader, Parts& parts, CalendarStyle& style) {
 
 bool isOfCalendar(const Parts& parts) {
   const bool isMidnight = parts.hour == 24 && parts.minute == 0 && parts.second == 0;
-  constexpr std::int64_t furthestYear = 20'000;
   return std::abs(parts.year) <= furthestYear && parts.month >= 1 && parts.month <= 12 && parts.day >= 1 &&
          parts.day <= daysOfMonth(parts.year, parts.month) && (parts.hour <= 23 || isMidnight) && parts.minute <= 59 &&
          parts.second <= 60;
+}
+
+std::string writeYear(std::int64_t year) {
+  return fmt::format("{}{:04}", year < 0 ? "-" : "", std::abs(year));
+}
+
+std::string writeWeek(CalendarMilliseconds midnight, const CalendarStyle& style, std::string_view dash) {
+  std::int64_t year = dateOf(midnight).year + 1;  // the first and the last days of a year may be another's
+  while (firstMonday(year) > midnight) {
+    --year;
+  }
+  const std::int64_t days = (midnight - firstMonday(year)) / day;
+  std::string text = fmt::format("{}{}W{:02}", writeYear(year), dash, days / 7 + 1);
+  return style.parts >= 3 ? text + fmt::format("{}{}", dash, days % 7 + 1) : text;
+}
+
+std::string writeDate(CalendarMilliseconds midnight, const CalendarStyle& style) {
+  const Date date = dateOf(midnight);
+  const std::string_view dash = style.isBasic ? "" : "-";
+  if (style.form == CalendarForm::WeekAndDay) {
+    return writeWeek(midnight, style, dash);
+  }
+  std::string text = writeYear(date.year);
+  if (style.form == CalendarForm::DayOfYear) {
+    return text + fmt::format("{}{:03}", dash, (midnight - fromDate(date.year, 1, 1)) / day + 1);
+  }
+  if (style.parts >= 2) {
+    text += fmt::format("{}{:02}", dash, date.month);
+  }
+  if (style.parts >= 3) {
+    text += fmt::format("{}{:02}", dash, date.day);
+  }
+  return text;
 }
 
 }  // namespace
@@ -266,17 +354,9 @@ std::optional<CalendarPeriod> readPeriod(std::string_view text) {
 }
 
 std::string writeInstant(CalendarMilliseconds at, const CalendarStyle& style) {
-  const Date date = dateOf(at);
-  const CalendarMilliseconds ofDay = at - fromDate(date.year, date.month, date.day);
-  const std::string_view dash = style.isBasic ? "" : "-";
+  const CalendarMilliseconds ofDay = (at % day + day) % day;
   const std::string_view colon = style.isBasic ? "" : ":";
-  std::string text = fmt::format("{}{:04}", date.year < 0 ? "-" : "", std::abs(date.year));
-  if (style.parts >= 2) {
-    text += fmt::format("{}{:02}", dash, date.month);
-  }
-  if (style.parts >= 3) {
-    text += fmt::format("{}{:02}", dash, date.day);
-  }
+  std::string text = writeDate(at - ofDay, style);
   if (style.parts >= 4) {
     text += fmt::format("{}{:02}", style.separator, ofDay / hour);
   }

@@ -202,6 +202,11 @@ Extent toDegrees(const Extent& radians) {
   return {radians.west / degree, radians.south / degree, radians.east / degree, radians.north / degree};
 }
 
+std::optional<Extent> extentOfBox(const MapCrs& crs, const Extent& box) {
+  const std::optional<Extent> degrees = crs.toDegrees(box);
+  return degrees ? extentFromDegrees(*degrees) : std::nullopt;
+}
+
 Result<DimensionValue> dimensionValue(const LayerDimension& dimension, const LayerChoices& choices,
                                       const std::string& where) {
   if (dimension.isTime()) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "globebrowsing/source/crs_names.h"
 #include "globebrowsing/source/map_crs.h"
 #include "globebrowsing/source/tile_service.h"
 #include "host/api/error.h"
@@ -80,7 +81,7 @@ struct CapabilitiesLayer {
   std::optional<Extent> extent{};      ///< radians; west may be beyond -pi, east beyond pi
   std::vector<LayerStyle> styles{};    ///< the default first
   std::vector<std::string> formats{};  ///< as the service spells them, best for us first
-  std::vector<std::string> crs{};      ///< names of CRSs that maps can be asked in
+  CrsNames crs{};                      ///< that maps can be asked in
   std::vector<LayerDimension> dimensions{};
   std::string attribution{};
   bool isOpaque = false;
@@ -90,7 +91,9 @@ struct CapabilitiesLayer {
   std::string document{};
 
   // For serviceOf.
-  std::vector<std::pair<std::string, Extent>> boundingBoxes{};  ///< by CRS name, easting first, in its units
+  /// By CRS name, in its units. Of maps: in the document's order of axes. Of tiles: easting first, and only where they
+  /// alone give the extent.
+  std::vector<std::pair<std::string, Extent>> boundingBoxes{};
   std::vector<MatrixSetLink> matrixSets{};
   std::vector<AddressTemplate> addresses{};
   double coarsestPixelMetres = 0.0;  ///< maps of larger and smaller pixels are empty; 0: not said

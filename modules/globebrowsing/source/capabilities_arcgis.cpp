@@ -107,9 +107,7 @@ void readPlace(const Json& document, CapabilitiesLayer& layer, const std::string
     return;
   }
   layer.boundingBoxes.emplace_back(name, *box);
-  if (const auto degrees = crs->toDegrees(*box)) {
-    layer.extent = extentFromDegrees(*degrees);
-  }
+  layer.extent = extentOfBox(*crs, *box);
 }
 
 /// Levels that hold tiles: by number where the service says so, else by scale.
@@ -176,12 +174,11 @@ Capabilities readMaps(const Json& document, Capabilities result, const Capabilit
   result.maximumWidth = sizeAt(document, "maxImageWidth", 0);
   result.maximumHeight = sizeAt(document, "maxImageHeight", 0);
   CapabilitiesLayer all = whole;
-  all.crs = {"EPSG:4326", "EPSG:3857"};  // it projects, as asked
   for (const auto& [name, box] : whole.boundingBoxes) {
-    all.crs.push_back(name);
+    all.crs = all.crs.with({name});
   }
-  if (!whole.extent) {
-    all.crs.erase(all.crs.begin(), all.crs.begin() + 2);
+  if (whole.extent) {
+    all.crs = all.crs.with({"EPSG:4326", "EPSG:3857"});  // it projects, as asked
   }
   all.formats = {"png32", "jpgpng", "jpg", "png"};
   const std::string operations = stringAt(document, "capabilities");
@@ -190,7 +187,7 @@ Capabilities readMaps(const Json& document, Capabilities result, const Capabilit
   } else if (!operations.empty() && !containsIgnoringCase(operations, "Map") &&
              !containsIgnoringCase(operations, "Image")) {
     all.obstacle = "it gives no maps but '" + operations + "'";
-  } else if (all.crs.empty()) {
+  } else if (all.crs.isEmpty()) {
     all.obstacle = "it does not say where its maps are";
   }
   result.layers.push_back(all);

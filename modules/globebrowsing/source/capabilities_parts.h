@@ -38,6 +38,8 @@ void sortFormats(std::vector<std::string>& formats);
 /// antimeridian with west greater than east, a pole overshot. Nothing where it cannot.
 [[nodiscard]] std::optional<Extent> extentFromDegrees(Extent degrees);
 [[nodiscard]] Extent toDegrees(const Extent& radians);
+/// Radians of a box in units of the CRS, its easting first. Nothing where the CRS has no such place.
+[[nodiscard]] std::optional<Extent> extentOfBox(const MapCrs& crs, const Extent& box);
 
 /// The value to ask for: the chosen one, the default, else the last time or the first value; and whether somebody chose
 /// it. Errors: a value chosen of a dimension that is no time and does not have it.

@@ -142,9 +142,7 @@ Result<Capabilities> readTileMap(const XmlDocument& document, Capabilities resul
   layer.title = result.title;
   layer.abstract = result.abstract;
   layer.identifier = result.title.empty() ? "tiles" : result.title;
-  if (const auto degrees = place->crs.toDegrees(place->box)) {
-    layer.extent = extentFromDegrees(*degrees);
-  }
+  layer.extent = extentOfBox(place->crs, place->box);
   const std::string extension = attribute(child(root, "TileFormat"), "extension");
   const std::string mime = attribute(child(root, "TileFormat"), "mime-type");
   layer.formats.push_back(mime.empty() ? extension : mime);
@@ -175,7 +173,7 @@ Result<Capabilities> readList(const XmlDocument& document, Capabilities result) 
     layer.document = resolvedUrl(document.where(), repairedUrl(attribute(entry, "href")));
     layer.obstacle = "it is described by a document of its own, " + layer.document;
     if (const std::string srs = attribute(entry, "srs"); !srs.empty()) {
-      layer.crs.push_back(srs);
+      layer.crs = CrsNames({srs});
     }
     result.layers.push_back(std::move(layer));
   }

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
-#include <unordered_set>
 
 #include "globebrowsing/source/capabilities_parts.h"
 #include "globebrowsing/source/service_text.h"
@@ -134,20 +134,14 @@ class WmsReader {
   }
 
   static void readCrsNames(const pugi::xml_node& node, CapabilitiesLayer& layer) {
-    std::unordered_set<std::string> known;  // there may be thousands
+    std::vector<std::string> names;
     for (const pugi::xml_node& entry : node.children()) {
-      if (!isNamed(entry, "SRS") && !isNamed(entry, "CRS")) {
-        continue;
-      }
-      if (known.empty()) {
-        known.insert(layer.crs.begin(), layer.crs.end());
-      }
-      for (std::string& name : split(text(entry), " \t\r\n,")) {
-        if (known.insert(name).second) {
-          layer.crs.push_back(std::move(name));
-        }
+      if (isNamed(entry, "SRS") || isNamed(entry, "CRS")) {
+        std::vector<std::string> some = split(text(entry), " \t\r\n,");
+        names.insert(names.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
       }
     }
+    layer.crs = layer.crs.with(std::move(names));
   }
 
   void readPlaces(const pugi::xml_node& node, CapabilitiesLayer& layer) {
@@ -168,6 +162,12 @@ class WmsReader {
       if (const std::optional<Extent> box = readBox(entry); box && !(crs + other).empty()) {
         putOrReplace(layer.boundingBoxes, std::pair{crs.empty() ? other : crs, *box},
                      [](const auto& a, const auto& b) { return a.first == b.first; });
+      }
+    }
+    // Where no degrees are given or inherited, by the first box that has some.
+    for (auto box = layer.boundingBoxes.begin(); box != layer.boundingBoxes.end() && !layer.extent; ++box) {
+      if (const auto crs = MapCrs::of(box->first, document_.where())) {
+        layer.extent = extentOfBox(*crs, isThree_ && crs->isNorthingFirst() ? axesExchanged(box->second) : box->second);
       }
     }
   }

@@ -4,6 +4,7 @@
 
 #include "globebrowsing/source/capabilities_parts.h"
 #include "globebrowsing/source/service_text.h"
+#include "globebrowsing/source/tile_pyramid.h"
 
 namespace meridian::globebrowsing {
 
@@ -21,6 +22,14 @@ std::optional<std::pair<double, double>> readCorner(const std::string& corner) {
   const auto first = number(parts[0]);
   const auto second = number(parts[1]);
   return first && second ? std::optional(std::pair{*first, *second}) : std::nullopt;
+}
+
+/// Of a bounding box, in the document's order of axes.
+std::optional<Extent> readCorners(const pugi::xml_node& box) {
+  const auto lower = readCorner(text(box, "LowerCorner"));
+  const auto upper = readCorner(text(box, "UpperCorner"));
+  return lower && upper ? std::optional(Extent{lower->first, lower->second, upper->first, upper->second})
+                        : std::nullopt;
 }
 
 /// A matrix before its pixels are in units of the CRS.
@@ -199,7 +208,6 @@ class WmtsReader {
     layer.identifier = text(node, "Identifier");
     layer.title = text(node, "Title").empty() ? layer.identifier : text(node, "Title");
     layer.abstract = text(node, "Abstract");
-    readExtent(node, layer);
     for (const pugi::xml_node& style : children(node, "Style")) {
       const bool isDefault = boolean(attribute(style, "isDefault")).value_or(false);
       layer.styles.insert(isDefault ? layer.styles.begin() : layer.styles.end(),
@@ -221,28 +229,67 @@ class WmtsReader {
       layer.dimensions.push_back(std::move(dimension));
     }
     readLinks(node, layer);
+    readExtent(node, layer);
     readAddresses(node, layer);
     layer.obstacle = obstacleOf(layer);
     result_.layers.push_back(std::move(layer));
   }
 
+  /// Where the layer gives no degrees, by a box in another CRS, that of a set before all others.
   void readExtent(const pugi::xml_node& node, CapabilitiesLayer& layer) const {
-    const auto read = [](const pugi::xml_node& box) -> std::optional<Extent> {
-      const auto lower = readCorner(text(box, "LowerCorner"));
-      const auto upper = readCorner(text(box, "UpperCorner"));
-      if (!lower || !upper) {
-        return std::nullopt;
-      }
-      return Extent{lower->first, lower->second, upper->first, upper->second};
-    };
-    if (const auto degrees = read(child(node, "WGS84BoundingBox"))) {
+    if (const auto degrees = readCorners(child(node, "WGS84BoundingBox"))) {
       layer.extent = extentFromDegrees(*degrees);
     }
-    for (const pugi::xml_node& box : children(node, "BoundingBox")) {
-      if (const auto extent = read(box)) {
-        layer.boundingBoxes.emplace_back(attribute(box, "crs"), *extent);
+    if (layer.extent) {
+      return;
+    }
+    auto& boxes = layer.boundingBoxes;
+    for (const pugi::xml_node& entry : children(node, "BoundingBox")) {
+      readBox(entry, layer);
+    }
+    std::stable_partition(boxes.begin(), boxes.end(),
+                          [&](const auto& box) { return linkedSet(layer, box.first) != nullptr; });
+    for (auto box = boxes.begin(); box != boxes.end() && !layer.extent; ++box) {
+      const auto crs = MapCrs::of(box->first, document_.where());
+      layer.extent = crs ? extentOfBox(*crs, box->second) : std::nullopt;
+    }
+  }
+
+  /// A name that is a URI brings its authority's order of axes, "EPSG:..." has its easting first, as GDAL takes it.
+  /// Where the box then lies beside its set and would not in the other order, that was meant.
+  void readBox(const pugi::xml_node& node, CapabilitiesLayer& layer) const {
+    std::string name = attribute(node, "crs");
+    if (name.empty() && !layer.matrixSets.empty()) {
+      name = result_.matrixSets[layer.matrixSets.front().set].crs;
+    }
+    const auto crs = MapCrs::of(name, document_.placeOf(node));
+    const auto box = readCorners(node);
+    if (!crs || !box || !(crs->isGeographic() || (box->west < box->east && box->south < box->north))) {
+      return;
+    }
+    const Extent turned = axesExchanged(*box);
+    const std::string scheme = lowerCase(name.substr(0, 4));
+    const bool isTurned = crs->isNorthingFirst() && (scheme == "urn:" || scheme == "http");
+    const MatrixSet* set = crs->isGeographic() ? nullptr : linkedSet(layer, name);
+    const bool isOther =
+        set != nullptr && !hasTilesIn(*set, isTurned ? turned : *box) && hasTilesIn(*set, isTurned ? *box : turned);
+    layer.boundingBoxes.emplace_back(name, isTurned != isOther ? turned : *box);
+  }
+
+  [[nodiscard]] static bool hasTilesIn(const MatrixSet& set, const Extent& extent) {
+    return std::any_of(set.matrices.begin(), set.matrices.end(),
+                       [&](TileMatrix matrix) { return clip(matrix, extent); });
+  }
+
+  /// The set in that CRS, if the layer has one that can be used.
+  [[nodiscard]] const MatrixSet* linkedSet(const CapabilitiesLayer& layer, const std::string& crs) const {
+    for (const MatrixSetLink& link : layer.matrixSets) {
+      const MatrixSet& set = result_.matrixSets[link.set];
+      if (set.problem.empty() && canonicalCrsName(set.crs) == canonicalCrsName(crs)) {
+        return &set;
       }
     }
+    return nullptr;
   }
 
   void readLinks(const pugi::xml_node& node, CapabilitiesLayer& layer) {

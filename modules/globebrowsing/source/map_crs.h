@@ -17,6 +17,11 @@ struct Extent {
   double north = 0.0;
 };
 
+/// As if northing and easting had been written the other way round.
+[[nodiscard]] constexpr Extent axesExchanged(const Extent& extent) {
+  return {extent.south, extent.west, extent.north, extent.east};
+}
+
 /// A coordinate reference system as map services name it: "EPSG:4326", "urn:ogc:def:crs:EPSG::3857", "CRS:84",
 /// "http://www.opengis.net/def/crs/EPSG/0/3031", Esri's numbers, IAU codes, WKT.
 class MapCrs {

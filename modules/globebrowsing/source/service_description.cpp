@@ -214,26 +214,23 @@ Result<ServiceDescription> describeGetMap(const std::string& url, const std::str
   CapabilitiesLayer layer;
   layer.identifier = replaceAll(replaceAll(layers, "%2C", ","), "%20", " ");
   layer.title = layer.identifier;
-  const std::string crs = replaceAll(parameter("crs").empty() ? parameter("srs") : parameter("crs"), "%3A", ":");
-  layer.crs = {crs.empty() ? std::string("EPSG:4326") : crs};
+  std::string crs = replaceAll(parameter("crs").empty() ? parameter("srs") : parameter("crs"), "%3A", ":");
+  crs = crs.empty() ? "EPSG:4326" : crs;
+  layer.crs = CrsNames({crs});
   if (const std::string format = replaceAll(parameter("format"), "%2F", "/"); !format.empty()) {
     layer.formats = {format};
   }
   const std::vector<std::string> box = split(replaceAll(parameter("bbox"), "%2C", ","), ",");
-  const auto known = MapCrs::of(layer.crs.front(), where);
+  const auto known = MapCrs::of(crs, where);
   if (!known) {
     return tl::make_unexpected(known.error());
   }
   if (box.size() == 4) {
     const bool isTurned = isWmsThree(version) && known->isNorthingFirst();
     const auto side = [&](std::size_t i) { return number(box[i]).value_or(0.0); };
-    const Extent extent =
-        isTurned ? Extent{side(1), side(0), side(3), side(2)} : Extent{side(0), side(1), side(2), side(3)};
-    layer.boundingBoxes = {
-        {layer.crs.front(), isTurned ? Extent{extent.south, extent.west, extent.north, extent.east} : extent}};
-    if (const auto degrees = known->toDegrees(extent)) {
-      layer.extent = extentFromDegrees(*degrees);
-    }
+    const Extent extent{side(0), side(1), side(2), side(3)};
+    layer.boundingBoxes = {{crs, extent}};
+    layer.extent = extentOfBox(*known, isTurned ? axesExchanged(extent) : extent);
   }
   LayerChoices choices;
   choices.isTransparent = boolean(parameter("transparent")).value_or(false);

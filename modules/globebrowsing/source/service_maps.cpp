@@ -16,28 +16,6 @@ namespace {
 constexpr double finestPixelMetres = 0.25;
 constexpr int tileSize = 512;
 
-/// What of a layer's CRSs suits a globe best, as the service names it.
-std::vector<std::string> crsByPreference(const CapabilitiesLayer& layer) {
-  std::vector<std::string> names = layer.crs;
-  if (names.empty()) {
-    names.emplace_back("EPSG:4326");
-  }
-  const auto rankOf = [](const std::string& name) {
-    const std::string canonical = canonicalCrsName(name);
-    return canonical == "CRS:84" ? 0 : canonical == "EPSG:4326" ? 1 : canonical == "EPSG:3857" ? 3 : 2;
-  };
-  // GeoServer lists thousands for each of a thousand layers: every name is looked at once.
-  std::vector<std::pair<int, std::string>> ranked;
-  ranked.reserve(names.size());
-  for (std::string& name : names) {
-    const int rank = rankOf(name);
-    ranked.emplace_back(rank, std::move(name));
-  }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::transform(ranked.begin(), ranked.end(), names.begin(), [](auto& entry) { return std::move(entry.second); });
-  return names;
-}
-
 struct MapPlace {
   std::string name;  ///< of the CRS, as the service has it
   MapCrs crs;
@@ -58,7 +36,7 @@ std::optional<Extent> extentIn(const CapabilitiesLayer& layer, const std::string
   for (const auto& [boxCrs, box] : layer.boundingBoxes) {
     if (boxCrs == name || canonicalCrsName(boxCrs) == canonicalCrsName(name)) {
       const bool isTurned = isAxisOrdered && crs.isNorthingFirst();
-      const Extent upright = isTurned ? Extent{box.south, box.west, box.north, box.east} : box;
+      const Extent upright = isTurned ? axesExchanged(box) : box;
       if (upright.west < upright.east && upright.south < upright.north) {
         return upright;
       }
@@ -69,27 +47,32 @@ std::optional<Extent> extentIn(const CapabilitiesLayer& layer, const std::string
 
 Result<MapPlace> choosePlace(const Capabilities& capabilities, const CapabilitiesLayer& layer,
                              const LayerChoices& choices) {
-  std::vector<std::string> names = crsByPreference(layer);
-  if (!choices.crs.empty()) {
-    const bool isNamed = std::find(names.begin(), names.end(), choices.crs) != names.end();
-    std::erase_if(names, [&](const std::string& name) {
-      return isNamed ? name != choices.crs : canonicalCrsName(name) != canonicalCrsName(choices.crs);
-    });
-    if (names.empty()) {
-      return failure("the layer '" + layer.title + "' cannot be had in the CRS '" + choices.crs + "'", capabilities.url,
-                     "choose one of: " + joined(layer.crs, ", ").substr(0, 300));
-    }
-  }
-  std::optional<Error> last;
+  const CrsNames offered = layer.crs.isEmpty() ? CrsNames({"EPSG:4326"}) : layer.crs;
   constexpr std::size_t mostTries = 50;
-  for (std::size_t i = 0; i < std::min(names.size(), mostTries); ++i) {
-    auto crs = MapCrs::of(names[i], capabilities.url);
+  std::vector<std::string> names;
+  if (choices.crs.empty()) {
+    names = offered.names(mostTries);
+  } else if (offered.contains(choices.crs)) {
+    names = {choices.crs};
+  } else {
+    names = offered.names();
+    const std::string wanted = canonicalCrsName(choices.crs);
+    std::erase_if(names, [&](const std::string& name) { return canonicalCrsName(name) != wanted; });
+  }
+  if (names.empty()) {
+    return failure("the layer '" + layer.title + "' cannot be had in the CRS '" + choices.crs + "'", capabilities.url,
+                   "choose one of: " + joined(offered.names(mostTries), ", ").substr(0, 300));
+  }
+  const bool isAxisOrdered = capabilities.kind == CapabilitiesKind::Wms && isWmsThree(capabilities.version);
+  std::optional<Error> last;
+  for (const std::string& name : names) {
+    auto crs = MapCrs::of(name, capabilities.url);
     if (!crs) {
       last = std::move(crs.error());
       continue;
     }
-    if (const auto extent = extentIn(layer, names[i], *crs, isWmsThree(capabilities.version))) {
-      return MapPlace{names[i], std::move(*crs), *extent};
+    if (const auto extent = extentIn(layer, name, *crs, isAxisOrdered)) {
+      return MapPlace{name, std::move(*crs), *extent};
     }
   }
   return failure("the layer '" + layer.title + "' can be had in no CRS that is known here", capabilities.url,
@@ -169,7 +152,7 @@ Result<QueryParameters> mapParameters(const Capabilities& capabilities, const Ca
 Result<QueryParameters> exportParameters(const CapabilitiesLayer& layer, const LayerChoices& choices,
                                          const MapPlace& place, const std::string& where) {
   QueryParameters parameters{{"bbox", "{West},{South},{East},{North}"}, {"size", "{Width},{Height}"}};
-  const std::string code = place.name.substr(std::min(place.name.find(':'), place.name.size() - 1) + 1);
+  const std::string code = place.name.substr(place.name.find(':') + 1);
   parameters.emplace_back("bboxSR", percentEncoded(code));
   parameters.emplace_back("imageSR", percentEncoded(code));
   parameters.emplace_back("format", choices.format.empty() ? "png32" : percentEncoded(choices.format));

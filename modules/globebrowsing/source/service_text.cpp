@@ -32,6 +32,36 @@ std::size_t pathBegin(std::string_view url) {
   return std::min(url.find_first_of("/?#", scheme + 3), url.size());
 }
 
+/// Segments "." and ".." of the path carried out (RFC 3986, section 5.2.4); those that lead out of a relative path
+/// stay.
+std::string withoutDots(std::string_view url) {
+  const std::size_t begin = pathBegin(url);
+  const std::size_t end = std::min(url.find_first_of("?#", begin), url.size());
+  const bool isAbsolute = url.substr(begin, 1) == "/";
+  std::vector<std::string_view> kept;
+  for (std::size_t at = begin + (isAbsolute ? 1 : 0); at <= end;) {
+    const std::size_t next = std::min(url.find('/', at), end);
+    const std::string_view segment = url.substr(at, next - at);
+    const bool isUpward = segment == "..";
+    if (isUpward && !kept.empty() && kept.back() != "..") {
+      kept.pop_back();
+    } else if (isUpward ? !isAbsolute : segment != ".") {
+      kept.push_back(segment);
+    }
+    if (next == end && (isUpward || segment == ".")) {
+      kept.emplace_back();  // a folder
+    }
+    at = next + 1;
+  }
+  std::string result(url.substr(0, begin));
+  const char* separator = isAbsolute ? "/" : "";
+  for (const std::string_view segment : kept) {
+    result.append(separator).append(segment);
+    separator = "/";
+  }
+  return result.append(url.substr(end));
+}
+
 }  // namespace
 
 std::string lowerCase(std::string_view text) {
@@ -209,39 +239,27 @@ std::string withoutQuery(std::string_view url) {
 
 std::string resolvedUrl(std::string_view base, std::string_view reference) {
   reference = trimmed(reference);
+  if (reference.empty()) {
+    return std::string(base.substr(0, base.find('#')));
+  }
   const std::size_t scheme = reference.find("://");
   if (scheme != std::string_view::npos && scheme < reference.find_first_of("/?#")) {
-    return std::string(reference);
+    return withoutDots(reference);
   }
-  const std::string document = withoutQuery(base);
-  if (reference.empty()) {
-    return document;
-  }
-  const std::size_t path = pathBegin(document);
+  std::string before = withoutQuery(base);  // what stands before the reference
+  const std::size_t path = pathBegin(before);
   if (reference.starts_with("//")) {
-    const std::size_t colon = document.find("://");
-    return (colon == std::string::npos ? "http:" : document.substr(0, colon + 1)) + std::string(reference);
+    const std::size_t colon = before.find("://");
+    before = colon == std::string::npos ? "http:" : before.substr(0, colon + 1);
+  } else if (reference.front() == '/') {
+    before.resize(path);
+  } else if (reference.front() != '?') {
+    const std::size_t slash = before.rfind('/');
+    const bool hasFolder = slash != std::string::npos && slash >= path;
+    before.resize(hasFolder ? slash + 1 : path);
+    before += !hasFolder && path > 0 ? "/" : "";
   }
-  if (reference.front() == '/') {
-    return document.substr(0, path) + std::string(reference);
-  }
-  if (reference.front() == '?') {
-    return document + std::string(reference);
-  }
-  const std::size_t slash = document.rfind('/');
-  std::string folder =
-      slash == std::string::npos || slash < path ? document.substr(0, path) : document.substr(0, slash);
-  while (reference.starts_with("./") || reference.starts_with("../")) {
-    const bool isUpward = reference.starts_with("../");
-    reference.remove_prefix(isUpward ? 3 : 2);
-    if (isUpward && folder.size() > path) {
-      folder.resize(std::max(path, std::min(folder.rfind('/'), folder.size())));
-    }
-  }
-  if (folder.empty() && slash != 0) {
-    return std::string(reference);
-  }
-  return folder + '/' + std::string(reference);
+  return withoutDots(before.append(reference));
 }
 
 std::string repairedUrl(std::string_view url) {

@@ -65,17 +65,19 @@ std::vector<TileMatrix> limited(const MatrixSet& set, const MatrixSetLink& link)
   return matrices;
 }
 
-/// What the layer says of its extent, in units of the set's CRS; without end where it says nothing.
-Extent extentIn(const MapCrs& crs, const CapabilitiesLayer& layer) {
+/// What the layer says of its extent, in units of the set's CRS: a box there is exact; without end where it says
+/// nothing.
+Extent extentIn(const MapCrs& crs, const CapabilitiesLayer& layer, const std::string& crsName) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::optional<Extent> extent;
-  if (layer.extent) {
-    extent = crs.fromDegrees(toDegrees(*layer.extent));
+  const bool isCylindrical = crs.isGeographic() || crs.isWebMercator();  // exact from degrees, and no further than they
+  for (const auto& [boxCrs, box] : layer.boundingBoxes) {
+    if (!isCylindrical && canonicalCrsName(boxCrs) == canonicalCrsName(crsName)) {
+      return box;
+    }
   }
-  if (crs.isGeographic()) {
-    return extent ? *extent : Extent{-180.0, -90.0, 180.0, 90.0};
-  }
-  return extent ? *extent : Extent{-infinity, -infinity, infinity, infinity};
+  const Extent unknown =
+      crs.isGeographic() ? Extent{-180.0, -90.0, 180.0, 90.0} : Extent{-infinity, -infinity, infinity, infinity};
+  return layer.extent ? crs.fromDegrees(toDegrees(*layer.extent)).value_or(unknown) : unknown;
 }
 
 /// An extent over the antimeridian, or of 0 to 360 degrees, on the one turn that a set of tiles has: moved there, or
@@ -205,7 +207,7 @@ Result<TileService> tilesOf(const Capabilities& capabilities, const Capabilities
   service.crs = crs.definition();
   service.attribution = creditText(layer.attribution.empty() ? capabilities.attribution : layer.attribution);
   const std::vector<TileMatrix> matrices = limited(set, **link);
-  const Extent extent = onTurn(extentIn(crs, layer), crs, matrices);
+  const Extent extent = onTurn(extentIn(crs, layer, set.crs), crs, matrices);
   auto placed = setMatrices(service, matrices, extent);
   if (!placed && !set.southOrigin) {
     placed = setMatrices(service, turned(matrices), extent);

@@ -19,6 +19,11 @@ constexpr CalendarMilliseconds lastOfCalendar = startOfYear(10'000) - 1;
 
 constexpr std::size_t mostProblems = 20;
 
+// Why an interval is none.
+constexpr std::string_view noTimes = "does not begin or end with a time";
+constexpr std::string_view beyondCalendar = "lies beyond the years -4000 to 9999";
+constexpr std::string_view noPeriod = "has no period that can be read";
+
 bool isNow(std::string_view text) {
   const std::string word = lowerCase(trimmed(text));
   return word == "present" || word == "current" || word == "now";
@@ -29,6 +34,22 @@ std::optional<CalendarInstant> readEnd(std::string_view text, CalendarMillisecon
     return CalendarInstant{now, {6, 3, false, true, 'T'}};
   }
   return readInstant(text);
+}
+
+constexpr std::int64_t endless = std::numeric_limits<std::int64_t>::max();
+
+/// Of ISO 8601's repeated interval, "R5/start/period": how often it comes. "R" alone is endless.
+std::optional<std::int64_t> readRepeats(std::string_view text) {
+  if (text.empty() || (text.front() != 'R' && text.front() != 'r')) {
+    return std::nullopt;
+  }
+  text.remove_prefix(1);
+  if (text.empty()) {
+    return endless;
+  }
+  const bool isCount = text.find_first_not_of("0123456789") == std::string_view::npos;
+  const std::optional<long long> count = isCount ? integer(text) : std::nullopt;
+  return count && *count > 0 ? std::optional<std::int64_t>(*count) : std::nullopt;
 }
 
 /// Of an interval that has every instant in it: the longest of these that its ends are whole ones of.
@@ -44,14 +65,18 @@ CalendarPeriod wholePeriod(CalendarMilliseconds start, CalendarMilliseconds end)
 /// As many parts as such steps need: hours of "1990/2000/PT6H" are no years.
 CalendarStyle styleOfSteps(CalendarStyle style, const CalendarPeriod& period) {
   const CalendarMilliseconds fraction = period.milliseconds % 1000;
-  const int needed = fraction != 0                           ? 7
-                     : period.milliseconds % 86'400'000 != 0 ? 6
-                     : period.milliseconds != 0              ? 3
-                     : period.months % 12 != 0               ? 2
-                                                             : 1;
+  int needed = fraction != 0                           ? 7
+               : period.milliseconds % 86'400'000 != 0 ? 6
+               : period.milliseconds != 0              ? 3
+               : period.months % 12 != 0               ? 2
+                                                       : 1;
   if (fraction != 0) {
     const int digits = fraction % 100 == 0 ? 1 : fraction % 10 == 0 ? 2 : 3;
     style.fractionDigits = style.parts < 7 ? digits : std::max(style.fractionDigits, digits);
+  }
+  if (style.form != CalendarForm::MonthAndDay) {  // where months and years begin amid a week
+    const bool isWholeWeeks = period.months == 0 && period.milliseconds % (7 * 86'400'000LL) == 0;
+    needed = isWholeWeeks ? 2 : std::max(needed, 3);
   }
   style.parts = std::max(style.parts, needed);
   return style;
@@ -107,10 +132,9 @@ bool TimeDimension::addApart(std::string_view part, CalendarMilliseconds now) {
   if (values.size() < 2) {
     // A blank may stand between day and hour as well, so only where every piece is a value of its own.
     values = split(tight, " \t");
-    const auto isValue = [&](const std::string& value) {
-      return readEnd(value.substr(0, value.find('/')), now).has_value();
-    };
-    const auto isSide = [&](const std::string& side) { return readEnd(side, now) || readPeriod(side); };
+    const auto isBegin = [&](const std::string& side) { return readEnd(side, now) || readRepeats(side); };
+    const auto isValue = [&](const std::string& value) { return isBegin(value.substr(0, value.find('/'))); };
+    const auto isSide = [&](const std::string& side) { return isBegin(side) || readPeriod(side); };
     if (values.size() < 2 || !std::all_of(values.begin(), values.end(), isValue) ||
         std::all_of(sides.begin(), sides.end(), isSide)) {
       return false;
@@ -123,14 +147,19 @@ bool TimeDimension::addApart(std::string_view part, CalendarMilliseconds now) {
 }
 
 void TimeDimension::addInterval(std::string_view part, CalendarMilliseconds now) {
-  const auto refuse = [&](std::string_view why) {
-    if (problems_.size() < mostProblems) {
-      problems_.push_back("the interval '" + std::string(part.substr(0, 80)) + "' " + std::string(why));
-    }
-  };
   const std::vector<std::string> pieces = split(part, "/");
+  const bool isRepeat = pieces.size() == 3 && readRepeats(pieces[0]);
+  const Understood interval = isRepeat ? repeatOf(pieces, now) : intervalOf(pieces, now);
+  if (interval) {
+    intervals_.push_back(*interval);
+  } else if (problems_.size() < mostProblems) {
+    problems_.push_back("the interval '" + std::string(part.substr(0, 80)) + "' " + std::string(interval.error()));
+  }
+}
+
+TimeDimension::Understood TimeDimension::intervalOf(const std::vector<std::string>& pieces, CalendarMilliseconds now) {
   if (pieces.size() < 2 || pieces.size() > 3) {
-    return refuse("has not the form start/end/period");
+    return tl::make_unexpected(std::string_view("has not the form start/end/period"));
   }
   const std::optional<CalendarInstant> start = readEnd(pieces[0], now);
   std::optional<CalendarInstant> end = readEnd(pieces[1], now);
@@ -140,28 +169,57 @@ void TimeDimension::addInterval(std::string_view part, CalendarMilliseconds now)
     }
   }
   if (!start || !end) {
-    return refuse("does not begin or end with a time");
+    return tl::make_unexpected(noTimes);
   }
   CalendarPeriod period;
   if (pieces.size() == 3 && pieces[2] != "0" && pieces[2] != "P" && pieces[2] != "PT") {
     const std::optional<CalendarPeriod> read = readPeriod(pieces[2]);
     if (!read) {
-      return refuse("has no period that can be read");
+      return tl::make_unexpected(noPeriod);
     }
     period = *read;
-  }
-  if (start->at < firstOfCalendar || end->at > lastOfCalendar) {
-    return refuse("lies beyond the years -4000 to 9999");
-  }
-  if (start->at > end->at) {
-    return refuse("ends before it begins");
   }
   if (period.isZero()) {
     period = wholePeriod(start->at, isNow(pieces[1]) ? start->at : end->at);
   }
-  const std::int64_t steps = periodsUntil(start->at, period, end->at);
-  intervals_.push_back({start->at, later(start->at, period, steps), period, static_cast<std::uint64_t>(steps) + 1,
-                        styleOfSteps(start->style, period)});
+  return stepsOf(*start, end->at, period);
+}
+
+TimeDimension::Understood TimeDimension::repeatOf(const std::vector<std::string>& pieces, CalendarMilliseconds now) {
+  const std::optional<CalendarInstant> start = readEnd(pieces[1], now);
+  const std::optional<CalendarInstant> second = readEnd(pieces[2], now);
+  if (!start) {
+    return tl::make_unexpected(noTimes);
+  }
+  const CalendarPeriod period =
+      second ? CalendarPeriod{0, second->at - start->at} : readPeriod(pieces[2]).value_or(CalendarPeriod());
+  if (period.isZero() || period.milliseconds < 0) {
+    return tl::make_unexpected(noPeriod);
+  }
+  const std::int64_t times = *readRepeats(pieces[0]);
+  Understood steps = stepsOf(*start, times == endless ? now : lastOfCalendar, period);
+  if (!steps || times == endless) {
+    return steps;
+  }
+  if (static_cast<std::uint64_t>(times) > steps->count) {
+    return tl::make_unexpected(beyondCalendar);
+  }
+  steps->count = static_cast<std::uint64_t>(times);
+  steps->end = later(start->at, period, times - 1);
+  return steps;
+}
+
+TimeDimension::Understood TimeDimension::stepsOf(const CalendarInstant& start, CalendarMilliseconds end,
+                                                 const CalendarPeriod& period) {
+  if (start.at < firstOfCalendar || std::max(start.at, end) > lastOfCalendar) {
+    return tl::make_unexpected(beyondCalendar);
+  }
+  if (start.at > end) {
+    return tl::make_unexpected(std::string_view("ends before it begins"));
+  }
+  const std::int64_t steps = periodsUntil(start.at, period, end);
+  return Interval{start.at, later(start.at, period, steps), period, static_cast<std::uint64_t>(steps) + 1,
+                  styleOfSteps(start.style, period)};
 }
 
 TimeDimension::Found TimeDimension::atOrBefore(CalendarMilliseconds at) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "globebrowsing/source/calendar.h"
+#include "host/api/error.h"
 #include "host/api/time.h"
 
 namespace meridian::globebrowsing {
@@ -15,6 +16,8 @@ namespace meridian::globebrowsing {
 /// The instants that a service has: WMS 1.1.1 and 1.3.0, annex C and D, WMTS 1.0.0 section 7.1.1. A list of values and
 /// of intervals "start/end/period". An interval without period (or with an empty or zero one) has every instant in it;
 /// of those, whole days are taken, or hours, minutes or seconds where its ends are no whole days.
+/// ISO 8601's repeated intervals "R5/start/period" and "R5/start/end" are the beginnings of the five; without a number
+/// they go on until now, since no service has maps of all times to come.
 /// An end cut short means its beginning ("2013-12-31" is that midnight): what lies after it might be refused.
 /// Intervals are never expanded: a century of five-minute steps costs what one step costs.
 ///
@@ -63,6 +66,11 @@ class TimeDimension {
   /// Values that only white space parts, as some servers write them; false where it is one value.
   bool addApart(std::string_view part, CalendarMilliseconds now);
   void addInterval(std::string_view part, CalendarMilliseconds now);
+  using Understood = tl::expected<Interval, std::string_view>;  ///< or why it is none
+  [[nodiscard]] static Understood intervalOf(const std::vector<std::string>& pieces, CalendarMilliseconds now);
+  [[nodiscard]] static Understood repeatOf(const std::vector<std::string>& pieces, CalendarMilliseconds now);
+  [[nodiscard]] static Understood stepsOf(const CalendarInstant& start, CalendarMilliseconds end,
+                                          const CalendarPeriod& period);
   [[nodiscard]] Found atOrAfter(CalendarMilliseconds at) const;
 
   std::vector<CalendarInstant> instants_;  ///< sorted

@@ -37,17 +37,37 @@ std::string degrees(const std::string& corner = "90 -180") {
   return matrixSet("d", "urn:ogc:def:crs:EPSG::4326", corner, "279541132.0143589", 2, 1);
 }
 
+std::string boundingBox(const std::string& element, const std::string& box) {
+  return "<" + element + "><LowerCorner>" + box.substr(0, box.find(';')) + "</LowerCorner><UpperCorner>" +
+         box.substr(box.find(';') + 1) + "</UpperCorner></" + element.substr(0, element.find(' ')) + ">";
+}
+
 std::string wmts(const std::string& box, const std::string& links, const std::string& rest, const std::string& sets) {
   return "<Capabilities version=\"1.0.0\"><OperationsMetadata><Operation name=\"GetTile\"><DCP><HTTP><Post "
          "href=\"http://h/post\"/></HTTP></DCP><DCP><HTTP><Get href=\"http://h/kvp?\"/></HTTP></DCP></Operation>"
-         "</OperationsMetadata><Contents><Layer><Identifier>a</Identifier><WGS84BoundingBox><LowerCorner>" +
-         box.substr(0, box.find(';')) + "</LowerCorner><UpperCorner>" + box.substr(box.find(';') + 1) +
-         "</UpperCorner></WGS84BoundingBox><Style><Identifier>s</Identifier></Style><Format>image/png</Format>"
+         "</OperationsMetadata><Contents><Layer><Identifier>a</Identifier>" +
+         (box.empty() ? "" : boundingBox("WGS84BoundingBox", box)) +
+         "<Style><Identifier>s</Identifier></Style><Format>image/png</Format>"
          "<TileMatrixSetLink>" +
          links + "</TileMatrixSetLink>" + rest + "</Layer>" + sets + "</Contents></Capabilities>";
 }
 
 const std::string linkToDegrees = "<TileMatrixSet>d</TileMatrixSet>";
+
+struct Box {
+  const char* what;
+  std::string crs;  ///< as an attribute of the element
+  const char* corners;
+  std::string set;
+  Extent expected;  ///< in units of the set
+};
+
+/// Of a layer without degrees. EPSG:2180 and EPSG:3035 have their northing first.
+class OddWmtsBox : public testing::TestWithParam<Box> {};
+
+const std::string poland = matrixSet("p", "urn:ogc:def:crs:EPSG::2180", "850000 140000", "10000000", 1, 1);
+const std::string europe = matrixSet("e", "urn:ogc:def:crs:EPSG::3035", "3200000 4200000", "1000000", 2, 2);
+const Extent warsaw{500000, 200000, 700000, 400000};
 
 }  // namespace
 
@@ -94,6 +114,55 @@ TEST(OddWmts, ExtentsBesideTheSetsTurnLoseNothing) {
   }
 }
 
+TEST_P(OddWmtsBox, PlacesTheLayer) {
+  const Box& test = GetParam();
+  const std::string name = test.set.substr(test.set.find("<Identifier>") + 12, 1);
+  for (const char* degreesToo : {"", "0 0;0 0"}) {
+    const auto capabilities = parse(wmts(degreesToo, "<TileMatrixSet>" + name + "</TileMatrixSet>",
+                                         boundingBox("BoundingBox" + test.crs, test.corners), test.set));
+    const TileService service = serviceOfOnly(capabilities);
+    EXPECT_NEAR(service.west, test.expected.west, 1e-6) << test.what;
+    EXPECT_NEAR(service.south, test.expected.south, 1e-6) << test.what;
+    EXPECT_NEAR(service.east, test.expected.east, 1e-6) << test.what;
+    EXPECT_NEAR(service.north, test.expected.north, 1e-6) << test.what;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfOrders, OddWmtsBox,
+    testing::Values(
+        Box{"authority's order", " crs=\"urn:ogc:def:crs:EPSG::2180\"", "200000 500000;400000 700000", poland, warsaw},
+        Box{"authority's order", " crs=\"http://www.opengis.net/def/crs/EPSG/0/2180\"", "200000 500000;400000 700000",
+            poland, warsaw},
+        Box{"easting first", " crs=\"EPSG:2180\"", "500000 200000;700000 400000", poland, warsaw},
+        Box{"the set's CRS", "", "200000 500000;400000 700000", poland, warsaw},
+        Box{"beside the set in the authority's order",
+            " crs=\"urn:ogc:def:crs:EPSG::3035\"",
+            "4250000 3100000;4300000 3150000",
+            europe,
+            {4250000, 3100000, 4300000, 3150000}},
+        Box{"degrees for metres",
+            " crs=\"urn:ogc:def:crs:EPSG::4326\"",
+            "-45 10;45 20",
+            matrixSet("m", "EPSG:3857", "-20037508.342789 20037508.342789", "559082264.0287178", 1, 1),
+            {10 * webMercatorHalfWidth / 180, -5621521.486192066, 20 * webMercatorHalfWidth / 180, 5621521.486192066}},
+        Box{"metres for degrees",
+            " crs=\"urn:ogc:def:crs:EPSG::3857\"",
+            "1113194.9079327358 -5621521.486192066;2226389.8158654715 5621521.486192066",
+            degrees(),
+            {10, -45, 20, 45}},
+        Box{"no place", " crs=\"EPSG:3857\"", "0 0;0 0", degrees(), {-180, -90, 180, 90}},
+        Box{"no place", " crs=\"urn:ogc:def:crs:EPSG::2180\"", "7 7;7 7", poland, {140000, 133200, 856800, 850000}},
+        Box{"no CRS that is known", " crs=\"urn:x:y\"", "0 0;9 9", degrees(), {-180, -90, 180, 90}}));
+
+TEST(OddWmts, DegreesCountBeforeBoxes) {
+  const TileService service =
+      serviceOfOnly(parse(wmts("5 48;15 55", linkToDegrees,
+                               boundingBox("BoundingBox crs=\"urn:ogc:def:crs:EPSG::4326\"", "0 0;9 9"), degrees())));
+  EXPECT_NEAR(service.west, 5, 1e-9);
+  EXPECT_NEAR(service.north, 55, 1e-9);
+}
+
 TEST(OddWmts, CornersInTheOtherOrderAreTurnedWhereNothingElseFits) {
   // ETRS89 / LAEA Europe has its northing first; here the easting is.
   const TileService turned =
@@ -129,6 +198,18 @@ TEST(OddWms, BoxesAreFoundByAnyNameOfTheirCrs) {
   EXPECT_EQ(service.north, 1000);
 }
 
+TEST(OddWms, BoxesPlaceLayersWithoutDegrees) {
+  const auto capabilities = parse(
+      "<WMS_Capabilities version=\"1.3.0\"><Capability><Layer><Name>a</Name><CRS>EPSG:4326</CRS><BoundingBox "
+      "CRS=\"EPSG:4326\" minx=\"40\" miny=\"-10\" maxx=\"50\" maxy=\"20\"/><Layer><Name>b</Name></Layer></Layer>"
+      "</Capability></WMS_Capabilities>");
+  const TileService service = serviceOfOnly(capabilities);
+  EXPECT_NEAR(service.west, -10, 1e-9);
+  EXPECT_NEAR(service.north, 50, 1e-9);
+  ASSERT_TRUE(capabilities->find("b")->extent);
+  EXPECT_EQ(capabilities->find("b")->extent->west, capabilities->layers.front().extent->west);
+}
+
 // GeoServer lists every CRS that it knows for every layer. Each name is looked at once, whatever their number: what
 // compares all with all takes minutes here.
 TEST(OddWms, ManyCrsNamesTakeNoLonger) {
@@ -141,6 +222,20 @@ TEST(OddWms, ManyCrsNamesTakeNoLonger) {
                                   "<SRS>EPSG:4326</SRS></Layer></Capability></WMT_MS_Capabilities>");
   EXPECT_EQ(serviceOfOnly(capabilities).crs, "");
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+}
+
+TEST(OddArcGis, BoxesHaveTheirEastingFirst) {
+  LayerChoices choices;
+  choices.crs = "EPSG:2180";
+  const TileService service = serviceOfOnly(
+      parse(R"({"currentVersion":10.8,"mapName":"M","capabilities":"Map","fullExtent":{"xmin":500000,"ymin":200000,
+                "xmax":700000,"ymax":400000,"spatialReference":{"wkid":2180}}})",
+            "http://h/arcgis/rest/services/M/MapServer?f=json"),
+      choices);
+  EXPECT_EQ(service.west, 500000);
+  EXPECT_EQ(service.north, 400000);
+  const std::string url = service.url({service.matrices.size() - 1, 0, 0});
+  EXPECT_NE(url.find("bboxSR=2180&imageSR=2180"), std::string::npos) << url;
 }
 
 TEST(OddArcGis, ServicesWithoutMapsSaySo) {

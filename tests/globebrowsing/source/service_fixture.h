@@ -43,4 +43,27 @@ inline Capabilities realCapabilities(const std::string& name, const std::string&
   return read ? std::move(*read) : Capabilities{};
 }
 
+inline TileService serviceOfLayer(const Capabilities& capabilities, const std::string& layer,
+                                  const LayerChoices& choices = {}) {
+  const CapabilitiesLayer* found = capabilities.find(layer);
+  EXPECT_NE(found, nullptr) << layer;
+  if (found == nullptr) {
+    return {};
+  }
+  auto service = serviceOf(capabilities, *found, choices);
+  EXPECT_TRUE(service) << (service ? "" : service.error().message());
+  return service ? std::move(*service) : TileService{};
+}
+
+/// Of every matrix the first and the last tile.
+inline std::vector<TileAddress> cornersOf(const TileService& service) {
+  std::vector<TileAddress> addresses;
+  for (std::size_t i = 0; i < service.matrices.size(); ++i) {
+    const TileMatrix& matrix = service.matrices[i];
+    addresses.push_back({i, matrix.firstColumn, matrix.firstRow});
+    addresses.push_back({i, matrix.lastColumn, matrix.lastRow});
+  }
+  return addresses;
+}
+
 }  // namespace meridian::globebrowsing::test

@@ -46,6 +46,32 @@ TEST(Calendar, ReadsWhatServicesWrite) {
                                                       {"2012-02-29T00:30:15-0130", "2012-02-29T02:00:15"},
                                                       {"2012-02-28T24:00:00Z", "2012-02-29T00:00:00"},
                                                       {" 2012-02-29 ", "2012-02-29T00:00:00"},
+                                                      // Weeks and days of the year, by Python's date.isocalendar.
+                                                      {"2024-W05-3", "2024-01-31T00:00:00"},
+                                                      {"2024W053", "2024-01-31T00:00:00"},
+                                                      {"2024-W05", "2024-01-29T00:00:00"},
+                                                      {"2024W05", "2024-01-29T00:00:00"},
+                                                      {"2024-W05-3T12:30Z", "2024-01-31T12:30:00"},
+                                                      {"2025-W01-1", "2024-12-30T00:00:00"},
+                                                      {"2020-W53-7", "2021-01-03T00:00:00"},
+                                                      {"2023-W01-1", "2023-01-02T00:00:00"},
+                                                      {"2024-031", "2024-01-31T00:00:00"},
+                                                      {"2024031", "2024-01-31T00:00:00"},
+                                                      {"2024-366", "2024-12-31T00:00:00"},
+                                                      {"2023365T23", "2023-12-31T23:00:00"},
+                                                      {"2024-02-03-0130", "2024-02-03T01:30:00"},
+                                                      {"20240203-0130", "2024-02-03T01:30:00"},
+                                                      {"2024-W00-1", nullptr},
+                                                      {"2024-W53-1", nullptr},
+                                                      {"2024-W05-0", nullptr},
+                                                      {"2024-W05-8", nullptr},
+                                                      {"2024-W5-3", nullptr},
+                                                      {"2024-W", nullptr},
+                                                      {"2024-000", nullptr},
+                                                      {"2023-366", nullptr},
+                                                      {"2024-0311", nullptr},
+                                                      {"99999-W01", nullptr},
+                                                      {"99999-001", nullptr},
                                                       {"2011-02-29", nullptr},
                                                       {"2011-13-01", nullptr},
                                                       {"2011-1-1", nullptr},
@@ -65,9 +91,27 @@ TEST(Calendar, ReadsWhatServicesWrite) {
 }
 
 TEST(Calendar, WritesInstantsAsTheyWereWritten) {
-  for (const char* text : {"1990", "2007-05", "2012-02-29", "20110805", "2012-02-29T12", "2012-02-29T12:30Z",
-                           "2012-02-29T12:30:15", "2012-02-29T12:30:15.250Z", "2012-02-29 12:30:15", "20110805T123015Z",
-                           "1969-12-31T23:59:59.999Z", "0001-01-01"}) {
+  for (const char* text : {"1990",
+                           "2007-05",
+                           "2012-02-29",
+                           "20110805",
+                           "2012-02-29T12",
+                           "2012-02-29T12:30Z",
+                           "2012-02-29T12:30:15",
+                           "2012-02-29T12:30:15.250Z",
+                           "2012-02-29 12:30:15",
+                           "20110805T123015Z",
+                           "1969-12-31T23:59:59.999Z",
+                           "0001-01-01",
+                           "2024-W05-3",
+                           "2024W053",
+                           "2024-W05",
+                           "2025-W01-1",
+                           "2020-W53-7",
+                           "2024-W05-3T12:30Z",
+                           "2024-031",
+                           "2024366",
+                           "1969-365T23:59"}) {
     const auto instant = readInstant(text);
     ASSERT_TRUE(instant) << text;
     EXPECT_EQ(writeInstant(instant->at, instant->style), text);
@@ -188,6 +232,55 @@ TEST(TimeDimension, ValuesAreAskedForAsTheyAreListed) {
   EXPECT_EQ(list.text(*list.first()), "2000-01-01T00:00:00.123456Z");
   EXPECT_EQ(list.text(*list.next(at("2000-01-01T12:00:00"))), "2000-01-02T00:00:00+02:00");
   EXPECT_EQ(list.text(*list.last()), "2000-01-03T00:00:00Z");
+}
+
+TEST(TimeDimension, StepsAreWrittenInTheFormOfTheirBeginning) {
+  EXPECT_EQ(textOf(dimension("2024-W05/2024-W20/P1W").next(at("2024-01-29"))), "2024-W06");
+  EXPECT_EQ(textOf(dimension("2024-W52/2025-W20/P2W").next(at("2024-12-23"))), "2025-W02");
+  EXPECT_EQ(textOf(dimension("2024-W05/2024-W20/P1M").next(at("2024-01-29"))), "2024-W09-4");
+  EXPECT_EQ(textOf(dimension("2024W053/2024W207/P1D").next(at("2024-01-31"))), "2024W054");
+  EXPECT_EQ(textOf(dimension("2023-364/2024-020/P8D").next(at("2023-12-30"))), "2024-007");
+  EXPECT_EQ(textOf(dimension("2024001/2024020/PT6H").next(at("2024-01-01"))), "2024001T060000");
+}
+
+TEST(TimeDimension, RepeatsAreTheBeginningsOfAll) {
+  for (const char* text : {"R5/2024-01-01/P1D", "R5/2024-01-01/2024-01-02", "r5/2024-01-01/P1D", "R5/2024-001/P1D"}) {
+    const TimeDimension five = dimension(text);
+    EXPECT_EQ(five.count(), 5U) << text;
+    EXPECT_TRUE(five.problems().empty()) << text;
+    EXPECT_EQ(five.first()->at, at("2024-01-01")) << text;
+    EXPECT_EQ(five.last()->at, at("2024-01-05")) << text;
+  }
+  EXPECT_EQ(textOf(dimension("R4/2024-01-31/P1M").last()), "2024-04-30");
+  EXPECT_EQ(textOf(dimension("R36/2018-03-15T12:00:00Z/PT6H").last()), "2018-03-24T06:00:00Z");
+  EXPECT_EQ(dimension("R1/2024-01-01/P1D").count(), 1U);
+  EXPECT_EQ(dimension("R2/2024-01-01/P1D R3/2025-01-01/P1D").count(), 5U);
+  EXPECT_EQ(dimension("R5/20240101 1200/P1D").count(), 5U);
+  // Without a number there is no last one but the present's.
+  EXPECT_EQ(textOf(dimension("R/2024-01-01/P1D").last()), "2026-11-25");
+  EXPECT_EQ(textOf(dimension("R/2024-01-01T00:00:00Z/PT7H").last()), "2026-11-25T08:00:00Z");
+}
+
+TEST(TimeDimension, RepeatsWithoutMeaningAreTold) {
+  for (const auto& [text, why] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"R0/2024-01-01/P1D", "does not begin or end with a time"},
+           {"R-1/2024-01-01/P1D", "does not begin or end with a time"},
+           {"R5/2024-01-01", "does not begin or end with a time"},
+           {"R5/P1D/2024-01-01", "does not begin or end with a time"},
+           {"Rx/2024-01-01/P1D", "does not begin or end with a time"},
+           {"R5/2024-01-01/2024-02-01/P1D", "has not the form start/end/period"},
+           {"R5/2024-01-01/PT0S", "has no period that can be read"},
+           {"R5/2024-01-01/rubbish", "has no period that can be read"},
+           {"R5/2024-01-02/2024-01-01", "has no period that can be read"},
+           {"R/2030-01-01/P1D", "ends before it begins"},
+           {"R9000/2024-01-01/P1Y", "lies beyond the years"},
+           {"R999999999999999/2024-01-01/P16384Y", "lies beyond the years"},
+           {"R5/19999-01-01/P16384Y", "lies beyond the years"}}) {
+    const TimeDimension none = dimension(text);
+    EXPECT_TRUE(none.isEmpty()) << text;
+    ASSERT_EQ(none.problems().size(), 1U) << text;
+    EXPECT_NE(none.problems()[0].find(why), std::string::npos) << none.problems()[0];
+  }
 }
 
 TEST(TimeDimension, ThePresentIsWhatItIsTold) {

@@ -130,6 +130,40 @@ TEST(ServiceText, ResolvesAddresses) {
   EXPECT_EQ(resolvedUrl("http://h", "0"), "http://h/0");
   EXPECT_EQ(resolvedUrl("/data/t/tilemapresource.xml", "0"), "/data/t/0");
   EXPECT_EQ(resolvedUrl("tilemapresource.xml", "0"), "0");
+  // RFC 3986, section 5.4, as far as addresses of services go.
+  const std::string rfc = "http://a/b/c/d;p?q";
+  for (const auto& [reference, target] :
+       std::initializer_list<std::pair<const char*, const char*>>{{"g", "http://a/b/c/g"},
+                                                                  {"./g", "http://a/b/c/g"},
+                                                                  {"g/", "http://a/b/c/g/"},
+                                                                  {"/g", "http://a/g"},
+                                                                  {"//g", "http://g"},
+                                                                  {"?y", "http://a/b/c/d;p?y"},
+                                                                  {"g?y", "http://a/b/c/g?y"},
+                                                                  {"", "http://a/b/c/d;p?q"},
+                                                                  {".", "http://a/b/c/"},
+                                                                  {"./", "http://a/b/c/"},
+                                                                  {"..", "http://a/b/"},
+                                                                  {"../", "http://a/b/"},
+                                                                  {"../g", "http://a/b/g"},
+                                                                  {"../..", "http://a/"},
+                                                                  {"../../g", "http://a/g"},
+                                                                  {"../../../g", "http://a/g"},
+                                                                  {"/./g", "http://a/g"},
+                                                                  {"/../g", "http://a/g"},
+                                                                  {"g.", "http://a/b/c/g."},
+                                                                  {"..g", "http://a/b/c/..g"},
+                                                                  {"./../g", "http://a/b/g"},
+                                                                  {"./g/.", "http://a/b/c/g/"},
+                                                                  {"g/./h", "http://a/b/c/g/h"},
+                                                                  {"g/../h", "http://a/b/c/h"},
+                                                                  {"g;x=1/../y", "http://a/b/c/y"},
+                                                                  {"g?y/../x", "http://a/b/c/g?y/../x"}}) {
+    EXPECT_EQ(resolvedUrl(rfc, reference), target) << reference;
+  }
+  EXPECT_EQ(resolvedUrl(rfc, "https://g/h/../i/{z}/./{x}.png?u=a/../b"), "https://g/i/{z}/{x}.png?u=a/../b");
+  EXPECT_EQ(resolvedUrl("http://a", "../g"), "http://a/g");
+  EXPECT_EQ(resolvedUrl("t/tilemapresource.xml", "../../0"), "../0");
   EXPECT_EQ(repairedUrl(" http:/h/x "), "http://h/x");
   EXPECT_EQ(repairedUrl("http://h/x"), "http://h/x");
 }
