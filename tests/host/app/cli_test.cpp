@@ -162,6 +162,44 @@ TEST_F(CommandLine, ABadAssetDoesNotTakeTheOthersDown) {
   EXPECT_TRUE(fs::exists(in("picture.png")));
 }
 
+TEST_F(CommandLine, AnAssetThatFailedIsReloadedWholly) {
+  write("globe.asset", R"(
+    local globe = { Identifier = "Globe", Renderable = { Type = "RenderableGlobe", Radii = 6e6 } }
+    asset.onInitialize(function() openspace.addSceneGraphNode(globe) end)
+    asset.onDeinitialize(function() openspace.removeSceneGraphNode(globe) end)
+  )");
+  const bool hasGlobes = run("--validate globe.asset").out.find("globes 1") != std::string::npos;
+  write("parts.asset", R"(
+    asset.onInitialize(function()
+      openspace.action.registerAction({ Identifier = "hello", Command = "" })
+      openspace.bindKey(isMended and "F6" or "F5", "hello")
+      if openspace.hasSceneGraphNode("Globe") then
+        openspace.globebrowsing.addLayer("Globe", "ColorLayers", { Identifier = isMended and "Good" or "Bad",
+          Type = "SolidColor", Color = { 1, 1, 1 } })
+      end
+      assert(isMended, "not mended")
+    end)
+  )");
+  write("mend.lua", R"(
+    isMended = true
+    openspace.asset.reload("parts.asset")
+    openspace.printInfo("keys " .. table.concat(openspace.keyBindingsForAction("hello"), " "))
+    if openspace.hasSceneGraphNode("Globe") then
+      openspace.printInfo("layers " .. table.concat(openspace.globebrowsing.layers("Globe", "ColorLayers"), " "))
+    end
+  )");
+  emptyScene();
+  const Outcome outcome = run(std::string(hasGlobes ? "globe.asset" : "empty.asset") +
+                              " parts.asset --headless --size 8x8 --script mend.lua --output picture.png");
+  EXPECT_EQ(outcome.code, 1) << "it had failed";
+  EXPECT_THAT(outcome.errors, HasSubstr("not mended"));
+  EXPECT_TRUE(fs::exists(in("picture.png"))) << outcome.errors;
+  EXPECT_THAT(outcome.errors, HasSubstr("keys F6\n"));
+  if (hasGlobes) {
+    EXPECT_THAT(outcome.errors, HasSubstr("layers Good\n"));
+  }
+}
+
 TEST_F(CommandLine, ValidateCountsAndEndsWithThree) {
   write("assets/good.asset", "asset.export('number', 3)\n");
   write("assets/below/bad.asset", "local = 3\n");
