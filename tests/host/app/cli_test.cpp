@@ -342,6 +342,47 @@ TEST_F(CommandLine, ARecordingThatStopsItselfEndsTheRun) {
   EXPECT_FALSE(fs::exists(in("frames/frame_000004.png")));
 }
 
+/// A recording of half a second that pauses itself after a quarter of one, and what else it does then.
+std::string pausingFlight(const std::string& more) {
+  return "OpenSpace_record/playback03.00A\n"
+         "camera 0.0 0.0 0.0 0.0 5000.0 0.0 0.0 0.0 1.0 1.0 - Place\n"
+         "script 0.25 0.25 1 openspace.sessionRecording.setPlaybackPause(true) " +
+         more + "\ncamera 0.5 0.5 0.0 0.0 3000.0 0.0 0.0 0.0 1.0 1.0 - Place\n";
+}
+
+TEST_F(CommandLine, ARecordingThatPausesForGoodFails) {
+  emptyScene();
+  write("flight.osrectxt", pausingFlight(""));
+  const std::string arguments = "empty.asset --headless --size 64x64 --play flight.osrectxt --fps 10 --output ";
+  const Outcome outcome = run(arguments + "frames.mkv");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("flight.osrectxt:3: this pauses the playback"));
+  EXPECT_GT(fs::file_size(in("frames.mkv")), 100U) << "what was drawn is kept";
+  const Outcome counted = run(arguments + "frames --frames 6");
+  EXPECT_EQ(counted.code, 0) << counted.errors;
+  EXPECT_TRUE(fs::exists(in("frames/frame_000005.png")));
+}
+
+TEST_F(CommandLine, APauseOfARecordingThatSomethingEndsDoesNotEndTheRun) {
+  emptyScene();
+  const std::string goOn = "openspace.sessionRecording.setPlaybackPause(false)";
+  const std::pair<std::string, int> cases[] = {
+      // By the next frame's script, by that of a movement of three frames, by a later entry of the same frame.
+      {"openspace.action.registerAction({ Identifier = 'on', Command = '" + goOn +
+           "' }) openspace.action.triggerAction('on')",
+       5},
+      {"openspace.setPropertyValueSingle('Navigation.Sensitivity', 2.0, 0.3, 'Linear', '" + goOn + "')", 8},
+      {"\nscript 0.26 0.26 1 " + goOn, 5}};
+  for (const auto& [more, last] : cases) {
+    write("flight.osrectxt", pausingFlight(more));
+    fs::remove_all(in("frames"));
+    const Outcome outcome = run("empty.asset --headless --size 8x8 --play flight.osrectxt --fps 10 --output frames");
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    EXPECT_TRUE(fs::exists(in("frames/frame_00000" + std::to_string(last) + ".png"))) << more;
+    EXPECT_FALSE(fs::exists(in("frames/frame_00000" + std::to_string(last + 1) + ".png"))) << more;
+  }
+}
+
 TEST_F(CommandLine, AFullDiskEndsTheRunOnlyWithRecord) {
   emptyScene();
   write("record.lua", "openspace.sessionRecording.startRecording()");
