@@ -51,7 +51,7 @@ Result<void> Session::checkPlayback() const {
       application_.animation().awaitsScript()) {
     return {};
   }
-  return failure("this pauses the playback, and nobody is left who could end the pause", control.pausedBy(),
+  return failure("the playback was paused, and nobody is left who could end the pause", control.pausedBy(),
                  "take it out, say with --frames how long the run is, or play the recording in a window");
 }
 

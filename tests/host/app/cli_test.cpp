@@ -356,7 +356,7 @@ TEST_F(CommandLine, ARecordingThatPausesForGoodFails) {
   const std::string arguments = "empty.asset --headless --size 64x64 --play flight.osrectxt --fps 10 --output ";
   const Outcome outcome = run(arguments + "frames.mkv");
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_THAT(outcome.errors, HasSubstr("flight.osrectxt:3: this pauses the playback"));
+  EXPECT_THAT(outcome.errors, HasSubstr("flight.osrectxt:3: the playback was paused"));
   EXPECT_GT(fs::file_size(in("frames.mkv")), 100U) << "what was drawn is kept";
   const Outcome counted = run(arguments + "frames --frames 6");
   EXPECT_EQ(counted.code, 0) << counted.errors;
