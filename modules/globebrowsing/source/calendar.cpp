@@ -46,130 +46,7 @@ std::int64_t daysOfMonth(std::int64_t year, std::int64_t month) {
   return static_cast<unsigned>(last.day());
 }
 
-/// Takes text from its front.
-class Reader {
- public:
-  explicit Reader(std::string_view text) : rest_(text) {}
-
-  bool take(std::string_view any) {
-    if (rest_.empty() || any.find(rest_.front()) == std::string_view::npos) {
-      return false;
-    }
-    rest_.remove_prefix(1);
-    return true;
-  }
-  std::optional<std::int64_t> digits(std::size_t count) {
-    std::int64_t value = 0;
-    if (rest_.size() < count) {
-      return std::nullopt;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      if (rest_[i] < '0' || rest_[i] > '9') {
-        return std::nullopt;
-      }
-      value = 10 * value + (rest_[i] - '0');
-    }
-    rest_.remove_prefix(count);
-    return value;
-  }
-  [[nodiscard]] std::size_t digitsAhead() const {
-    return std::min(rest_.find_first_not_of("0123456789"), rest_.size());
-  }
-  [[nodiscard]] bool atEnd() const { return rest_.empty(); }
-
- private:
-  std::string_view rest_;
-};
-
-/// The parts of an instant as they stand in the text.
-struct Parts {
-  std::int64_t year = 0;
-  std::int64_t month = 1;
-  std::int64_t day = 1;
-  std::int64_t hour = 0;
-  std::int64_t minute = 0;
-  std::int64_t second = 0;
-  std::int64_t milliseconds = 0;
-  std::int64_t zoneMinutes = 0;
-};
-
-bool readDate(Reader& reader, Parts& parts, CalendarStyle& style) {
-  const bool isNegative = reader.take("-");
-  const std::size_t ahead = reader.digitsAhead();
-  style.isBasic = ahead == 8 || (ahead > 8 && !isNegative) || ahead == 6;
-  const auto year = reader.digits(style.isBasic || ahead < 4 ? 4 : ahead);
-  if (!year || (ahead != 4 && ahead != 5 && !style.isBasic)) {
-    return false;
-  }
-  parts.year = isNegative ? -*year : *year;
-  style.parts = 1;
-  for (std::int64_t* part : {&parts.month, &parts.day}) {
-    if (style.isBasic ? reader.digitsAhead() < 2 : !reader.take("-")) {
-      return true;
-    }
-    const auto value = reader.digits(2);
-    if (!value) {
-      return false;
-    }
-    *part = *value;
-    ++style.parts;
-  }
-  return true;
-}
-
-bool readFraction(Reader& reader, Parts& parts, CalendarStyle& style) {
-  const std::size_t count = reader.digitsAhead();
-  if (count == 0) {
-    return false;
-  }
-  std::int64_t unit = second;
-  for (std::size_t i = 0; i < count; ++i) {
-    unit /= 10;
-    parts.milliseconds += unit * *reader.digits(1);
-  }
-  style.parts = 7;
-  style.fractionDigits = static_cast<int>(std::min<std::size_t>(count, 3));
-  return true;
-}
-
-bool readTimeOfDay(Reader& reader, Parts& parts, CalendarStyle& style) {
-  bool isFirst = true;
-  for (std::int64_t* part : {&parts.hour, &parts.minute, &parts.second}) {
-    if (!isFirst && (style.isBasic ? reader.digitsAhead() < 2 : !reader.take(":"))) {
-      break;
-    }
-    const auto value = reader.digits(2);
-    if (!value) {
-      return false;
-    }
-    *part = *value;
-    ++style.parts;
-    isFirst = false;
-  }
-  return style.parts < 6 || !reader.take(".,") || readFraction(reader, parts, style);
-}
-
-bool readZone(Reader& reader, Parts& parts, CalendarStyle& style) {
-  if (reader.take("Zz")) {
-    style.hasZone = true;
-    return true;
-  }
-  const bool isEast = reader.take("+");
-  if (!isEast && !reader.take("-")) {
-    return true;
-  }
-  const auto hours = reader.digits(2);
-  reader.take(":");
-  const auto minutes = reader.atEnd() ? std::optional<std::int64_t>(0) : reader.digits(2);
-  if (!hours || !minutes) {
-    return false;
-  }
-  parts.zoneMinutes = (*hours * 60 + *minutes) * (isEast ? 1 : -1);
-  style.hasZone = true;  // it is written back in UTC
-  return true;
-}
-
-bool isOfCalendar(const Parts& parts) {
+bool isOfCalendar(const CalendarText& parts) {
   const bool isMidnight = parts.hour == 24 && parts.minute == 0 && parts.second == 0;
   constexpr std::int64_t furthestYear = 20'000;
   return std::abs(parts.year) <= furthestYear && parts.month >= 1 && parts.month <= 12 && parts.day >= 1 &&
@@ -180,28 +57,14 @@ bool isOfCalendar(const Parts& parts) {
 }  // namespace
 
 std::optional<CalendarInstant> readInstant(std::string_view text) {
-  text = trimmed(text);
-  Reader reader(text);
-  Parts parts;
-  CalendarInstant instant;
-  if (!readDate(reader, parts, instant.style)) {
+  const std::optional<CalendarText> read = readCalendarText(text);
+  if (!read || !read->isIso || !isOfCalendar(*read)) {
     return std::nullopt;
   }
-  if (!reader.atEnd() && instant.style.parts == 3) {
-    const bool hasBlank = text.find(' ') != std::string_view::npos;
-    if (reader.take("Tt ")) {
-      instant.style.separator = hasBlank ? ' ' : 'T';
-      if (!readTimeOfDay(reader, parts, instant.style)) {
-        return std::nullopt;
-      }
-    }
-  }
-  if (!readZone(reader, parts, instant.style) || !reader.atEnd() || !isOfCalendar(parts)) {
-    return std::nullopt;
-  }
-  instant.at = fromDate(parts.year, parts.month, parts.day) + parts.hour * hour +
-               (parts.minute - parts.zoneMinutes) * minute + parts.second * second + parts.milliseconds;
-  return instant;
+  return CalendarInstant{fromDate(read->year, read->month, read->day) + read->hour * hour +
+                             (read->minute - read->zoneMinutes) * minute + read->second * second +
+                             read->nanoseconds / 1'000'000,
+                         read->style};
 }
 
 std::optional<CalendarPeriod> readPeriod(std::string_view text) {
