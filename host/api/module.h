@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -55,6 +56,8 @@ class Host {
   [[nodiscard]] virtual Result<Value> readLuaData(const std::filesystem::path& file) const = 0;
   /// As openspace.addSceneGraphNode.
   virtual Result<void> addSceneGraphNode(const Value& table) = 0;
+  /// To be told of whatever a script registers under a name, other than nodes: see NoteRegistration.
+  virtual void noteRegistration(std::string name, std::function<void()> takeBack) = 0;
 };
 
 /// A part of the program that can be left out at build time. Named in CMake; the host finds it in a generated list.

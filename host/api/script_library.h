@@ -13,6 +13,10 @@ namespace meridian {
 /// What a script function returns: none, one or several values. An Error becomes a Lua error with the caller's place.
 using ScriptResult = Result<std::vector<Value>>;
 
+/// Hears that a script registered something under a name of its kind ("action sun"), and how to take that back, which
+/// does nothing once it is gone: what an asset registered before it failed must not be in the way when it is reloaded.
+using NoteRegistration = std::function<void(std::string name, std::function<void()> takeBack)>;
+
 /// One function of the `openspace` table. Arguments that the script leaves out are not in the span.
 struct ScriptFunction {
   std::string name;

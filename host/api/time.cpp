@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string_view>
 
 #include <erfa.h>
 #include <fmt/format.h>
+
+#include "host/api/calendar_text.h"
 
 namespace meridian {
 
@@ -46,125 +46,6 @@ Time timeFromUtc(const Time::JulianDate& utc) {
   return Time((tt.day - j2000) * secondsPerDay + tt.fraction * secondsPerDay + tdbMinusTt(tt));
 }
 
-struct CalendarTime {
-  int year = 0;
-  int month = 0;
-  int day = 0;
-  int hour = 0;
-  int minute = 0;
-  double second = 0.0;
-};
-
-/// Takes text from its front, piece by piece.
-class Reader {
- public:
-  explicit Reader(std::string_view text) : rest_(text) {}
-
-  bool take(char c) {
-    const bool there = !rest_.empty() && rest_.front() == c;
-    rest_.remove_prefix(there ? 1 : 0);
-    return there;
-  }
-  /// A number of `least` to `most` digits, without sign.
-  bool digits(std::size_t least, std::size_t most, int& number) {
-    std::size_t count = 0;
-    number = 0;
-    while (count < most && count < rest_.size() && rest_[count] >= '0' && rest_[count] <= '9') {
-      number = 10 * number + (rest_[count++] - '0');
-    }
-    rest_.remove_prefix(count);
-    return count >= least;
-  }
-  /// The first letters of an English month, and the rest of the word.
-  bool month(int& number) {
-    static constexpr std::string_view months = "JANFEBMARAPRMAYJUNJULAUGSEPOCTNOVDEC";
-    std::string word;
-    while (word.size() < rest_.size() && std::isalpha(static_cast<unsigned char>(rest_[word.size()])) != 0) {
-      word += static_cast<char>(std::toupper(static_cast<unsigned char>(rest_[word.size()])));
-    }
-    const std::size_t found = word.size() < 3 ? std::string_view::npos : months.find(word.substr(0, 3));
-    if (found == std::string_view::npos || found % 3 != 0) {
-      return false;
-    }
-    rest_.remove_prefix(word.size());
-    number = static_cast<int>(found / 3) + 1;
-    return true;
-  }
-  /// What follows a decimal point; 0 without one.
-  double fraction() {
-    double value = 0.0;
-    if (take('.')) {
-      for (double unit = 0.1; !rest_.empty() && rest_.front() >= '0' && rest_.front() <= '9'; unit /= 10.0) {
-        value += unit * (rest_.front() - '0');
-        rest_.remove_prefix(1);
-      }
-    }
-    return value;
-  }
-  void blanks() {
-    while (take(' ')) {
-    }
-  }
-  [[nodiscard]] bool atEnd() const { return rest_.empty(); }
-
- private:
-  std::string_view rest_;
-};
-
-bool readTimeOfDay(Reader& reader, CalendarTime& time) {
-  if (!reader.digits(1, 2, time.hour) || !reader.take(':') || !reader.digits(1, 2, time.minute)) {
-    return false;
-  }
-  int seconds = 0;
-  if (reader.take(':')) {
-    if (!reader.digits(1, 2, seconds)) {
-      return false;
-    }
-    time.second = seconds + reader.fraction();
-  }
-  return true;
-}
-
-bool readSeparator(Reader& reader) {
-  if (reader.take('-') || reader.take('/')) {
-    return true;
-  }
-  const bool blank = reader.take(' ');
-  reader.blanks();
-  return blank;
-}
-
-/// "07-14" or "JUL 14".
-bool readMonthAndDay(Reader& reader, CalendarTime& time) {
-  return (reader.month(time.month) || reader.digits(1, 2, time.month)) && readSeparator(reader) &&
-         reader.digits(1, 2, time.day);
-}
-
-std::optional<CalendarTime> readCalendar(std::string_view text) {
-  Reader reader(text);
-  CalendarTime time;
-  reader.blanks();
-  const bool negative = reader.take('-');
-  if (!reader.digits(4, 5, time.year) || !readSeparator(reader) || !readMonthAndDay(reader, time)) {
-    return std::nullopt;
-  }
-  time.year = negative ? -time.year : time.year;
-  if (reader.take('T')) {
-    if (!readTimeOfDay(reader, time)) {
-      return std::nullopt;
-    }
-  } else {
-    reader.blanks();
-    if (!reader.atEnd() && !reader.take('Z') && !readTimeOfDay(reader, time)) {
-      return std::nullopt;
-    }
-  }
-  reader.blanks();
-  reader.take('Z');
-  reader.blanks();
-  return reader.atEnd() ? std::optional(time) : std::nullopt;
-}
-
 }  // namespace
 
 Result<Time> Time::fromUtc(std::string_view text) {
@@ -172,20 +53,22 @@ Result<Time> Time::fromUtc(std::string_view text) {
     return failure(fmt::format("\"{}\" is not a UTC time: {}", text.substr(0, 64), why), {},
                    "write it as 2026-11-22T21:17:05");
   };
-  const std::optional<CalendarTime> calendar = readCalendar(text);
-  if (!calendar) {
+  const std::optional<CalendarText> calendar = readCalendarText(text);
+  constexpr int hourAlone = 4;
+  if (!calendar || calendar->style.isBasic || calendar->style.parts < 3 || calendar->style.parts == hourAlone) {
     return bad("it is not of the form YYYY-MM-DDThh:mm:ss");
   }
   if (calendar->year < -4000 || calendar->year > 9999) {
     return bad("the year is outside -4000..9999");
   }
   JulianDate utc{};
-  const int status = eraDtf2d("UTC", calendar->year, calendar->month, calendar->day, calendar->hour, calendar->minute,
-                              calendar->second, &utc.day, &utc.fraction);
+  const int status =
+      eraDtf2d("UTC", calendar->year, calendar->month, calendar->day, calendar->hour, calendar->minute,
+               calendar->second + 1e-9 * static_cast<double>(calendar->nanoseconds), &utc.day, &utc.fraction);
   if (status < 0 || status == 2 || status == 3) {
     return bad("the calendar has no such date or time of day");
   }
-  return timeFromUtc(utc);
+  return timeFromUtc(utc) + -60.0 * calendar->zoneMinutes;
 }
 
 Time Time::now() {

@@ -16,10 +16,10 @@ class Time {
   Time() = default;
   explicit constexpr Time(double tdbSecondsPastJ2000) : seconds_(tdbSecondsPastJ2000) {}
 
-  /// Reads "2026-11-22", "2026-11-22T21:17:05", "...05.250", with a blank instead of the T, and an optional Z. Between
-  /// year, month and day may be blanks or slashes, and the month an English word or its first three letters, as SPICE
-  /// writes them: "2026 NOV 22 21:17:05".
-  /// Errors: anything else; a date that the calendar does not have; a year outside -4000..9999.
+  /// Reads whole dates in any form of readCalendarText but the basic one: "2026-11-22", "2026-11-22T21:17:05",
+  /// "2026-11-22 23:17:05.250+02:00", "2026 NOV 22 21:17:05". Without a zone it is UTC.
+  /// Errors: anything else, an hour without minutes; a date that the calendar does not have; a year outside
+  /// -4000..9999.
   [[nodiscard]] static Result<Time> fromUtc(std::string_view text);
   /// The machine's clock.
   [[nodiscard]] static Time now();

@@ -54,8 +54,11 @@ void Application::registerLibraries() {
   for (const ScriptLibrary& library : scripting::foreignLibraries()) {
     scripts_.registerLibrary(library);
   }
-  scripts_.registerLibrary(scripting::actionLibrary(actions_));
-  scripts_.registerLibrary(scripting::keyLibrary(keys_));
+  const NoteRegistration note = [this](std::string name, std::function<void()> takeBack) {
+    noteRegistration(std::move(name), std::move(takeBack));
+  };
+  scripts_.registerLibrary(scripting::actionLibrary(actions_, note));
+  scripts_.registerLibrary(scripting::keyLibrary(keys_, note));
   scripts_.registerLibrary(scene::sceneLibrary(scene_));
   scripts_.registerLibrary(moduleLibrary());
   scripts_.registerLibrary(scripting::propertyLibrary(root_, properties_, animation_));
@@ -190,6 +193,10 @@ Result<Value> Application::readLuaData(const std::filesystem::path& file) const 
 Result<void> Application::addSceneGraphNode(const Value& table) {
   const ScriptPlace place = scriptPlace();
   return addNode(table, place.where, place.folder).map([&] { assetLoader_.noteNode(table); });
+}
+
+void Application::noteRegistration(std::string name, std::function<void()> takeBack) {
+  assetLoader_.noteRegistration(std::move(name), std::move(takeBack));
 }
 
 Result<void> Application::addNode(const Value& table, const std::string& where, const std::string& folder) {

@@ -70,6 +70,7 @@ class Application final : public Host, private assets::AssetTarget {
   [[nodiscard]] Result<std::filesystem::path> writablePath(std::string_view path) const override;
   [[nodiscard]] Result<Value> readLuaData(const std::filesystem::path& file) const override;
   Result<void> addSceneGraphNode(const Value& table) override;
+  void noteRegistration(std::string name, std::function<void()> takeBack) override;
 
   /// The panels registered so far; they are then the caller's.
   [[nodiscard]] std::vector<std::unique_ptr<Panel>> takePanels() { return std::move(panels_); }

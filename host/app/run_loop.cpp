@@ -30,6 +30,11 @@ Result<void> RunLoop::run() {
       return drawn;
     }
     tellProgress();
+    if (options_.play && !options_.frames && parts_.window == nullptr) {
+      if (auto playing = parts_.session.checkPlayback(); !playing) {
+        return playing;
+      }
+    }
   }
   const bool hasAnEnd = options_.frames || options_.output || parts_.window == nullptr;
   if (isInterrupted() && hasAnEnd && !isDone()) {

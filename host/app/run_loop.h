@@ -37,7 +37,7 @@ class RunLoop {
   RunLoop(const Options& options, const Parts& parts) : options_(options), parts_(parts) {}
 
   /// Errors: a frame cannot be drawn, written or, with --record, recorded; interrupted before an end that was asked
-  /// for.
+  /// for; without a window and --frames, the recording of --play was paused for good.
   [[nodiscard]] Result<void> run();
   /// To be called from within run, by input.
   void quit() { quit_ = true; }

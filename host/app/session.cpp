@@ -45,6 +45,16 @@ Result<void> Session::advance() {
   return record(seconds);
 }
 
+Result<void> Session::checkPlayback() const {
+  const recording::SessionControl& control = application_.recording();
+  if (!isPlaying() || !control.isPlaybackPaused() || application_.scripts().hasQueued() ||
+      application_.animation().awaitsScript()) {
+    return {};
+  }
+  return failure("the playback was paused, and nobody is left who could end the pause", control.pausedBy(),
+                 "take it out, say with --frames how long the run is, or play the recording in a window");
+}
+
 Result<void> Session::record(double seconds) {
   recording::SessionControl& control = application_.recording();
   Result<void> recorded = control.record(seconds);

@@ -37,6 +37,8 @@ class Session {
   /// Frame seconds since the start.
   [[nodiscard]] double wallSeconds() const { return timer_.total(); }
   [[nodiscard]] bool isPlaying() const { return application_.recording().isPlaying(); }
+  /// Error: the playback is paused, and no script is left that could end that.
+  [[nodiscard]] Result<void> checkPlayback() const;
 
  private:
   Session(Application& application, const Options& options, scripting::FrameTimer timer)

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <lua.hpp>
@@ -228,15 +229,14 @@ void AssetGraph::noteMissing(const fs::path& path) {
   }
 }
 
-void AssetGraph::noteNode(const std::string& identifier) {
-  if (running_.empty()) {
-    return;
-  }
+void AssetGraph::note(Registration registration) {
   // Whoever had one of that name has lost it.
   for (const auto& asset : assets_) {
-    std::erase(asset->nodes, identifier);
+    std::erase_if(asset->registrations, [&](const Registration& each) { return each.name == registration.name; });
   }
-  running_.back()->nodes.push_back(identifier);
+  if (!running_.empty()) {
+    running_.back()->registrations.push_back(std::move(registration));
+  }
 }
 
 void AssetGraph::fail(Asset& asset, Error error) {
@@ -269,7 +269,7 @@ void AssetGraph::sweep() {
   }
   for (const auto& asset : assets_) {
     if (needed.count(asset.get()) == 0 && asset->state != Asset::State::Initialized) {
-      removeNodes(*asset);
+      takeBack(*asset);
     }
   }
   std::erase_if(initialized_, [&](const Asset* asset) { return needed.count(asset) == 0; });
@@ -294,11 +294,11 @@ void AssetGraph::deinitialize(Asset& asset) {
 
 /// Its onDeinitialize cannot do that: it would stop at the first thing that was never added, or take away one of the
 /// same name that is another asset's and in whose way this one failed.
-void AssetGraph::removeNodes(Asset& asset) {
-  for (auto node = asset.nodes.rbegin(); node != asset.nodes.rend(); ++node) {
-    removeNode_(*node);
+void AssetGraph::takeBack(Asset& asset) {
+  for (auto last = asset.registrations.rbegin(); last != asset.registrations.rend(); ++last) {
+    last->takeBack();
   }
-  asset.nodes.clear();
+  asset.registrations.clear();
 }
 
 void AssetGraph::forget(Asset& asset) {

@@ -7,7 +7,6 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "host/api/error.h"
@@ -18,6 +17,12 @@ namespace meridian::assets {
 
 /// Whether it is called "NAME.asset" (Lua) or "NAME.jasset" (JSON).
 [[nodiscard]] bool isAssetFile(const std::filesystem::path& path);
+
+/// What an asset's code registered, by a name of its kind ("node Earth"), and how to take it back if it is still there.
+struct Registration {
+  std::string name;
+  std::function<void()> takeBack;
+};
 
 /// One asset's file that was reached. References are to values in Lua's registry.
 struct Asset {
@@ -36,7 +41,7 @@ struct Asset {
   int exports = 0;  ///< what asset.require gives
   std::vector<int> onInitialize;
   std::vector<int> onDeinitialize;
-  std::vector<std::string> nodes;  ///< that its code added, in that order
+  std::vector<Registration> registrations;  ///< of its code, in that order
 
   /// It failed for want of data that were not synchronised. Those that require it go on without.
   [[nodiscard]] bool isUnavailable() const { return state == State::Failed && !missing.empty(); }
@@ -45,11 +50,7 @@ struct Asset {
 /// The assets, who requires whom, and the order in which they come and go.
 class AssetGraph {
  public:
-  /// Takes the node away if it is still there.
-  using RemoveNode = std::function<void(const std::string& identifier)>;
-
-  AssetGraph(scripting::ScriptEngine& engine, PathTokens& tokens, RemoveNode removeNode)
-      : engine_(&engine), tokens_(&tokens), removeNode_(std::move(removeNode)) {}
+  AssetGraph(scripting::ScriptEngine& engine, PathTokens& tokens) : engine_(&engine), tokens_(&tokens) {}
   AssetGraph(const AssetGraph&) = delete;
   AssetGraph& operator=(const AssetGraph&) = delete;
 
@@ -74,11 +75,11 @@ class AssetGraph {
   /// Data that the running asset would have read were not synchronised.
   void noteMissing(const std::filesystem::path& path);
 
-  /// The running asset added a node.
-  void noteNode(const std::string& identifier);
+  /// The code that runs, of an asset or not, registered something.
+  void note(Registration registration);
 
   /// Deinitialises and forgets all that no root needs any more, those who require before the required. Those that did
-  /// not come as far as to be initialised lose the nodes that they added.
+  /// not come as far as to be initialised lose what they registered.
   void sweep();
 
   /// asset.meta.Name.
@@ -91,12 +92,11 @@ class AssetGraph {
   Result<void> runFile(Asset& asset, bool enabled);
   Result<void> callFunction(Asset& asset, int reference);
   void deinitialize(Asset& asset);
-  void removeNodes(Asset& asset);
+  static void takeBack(Asset& asset);
   void forget(Asset& asset);
 
   scripting::ScriptEngine* engine_;
   PathTokens* tokens_;
-  RemoveNode removeNode_;
   std::vector<std::unique_ptr<Asset>> assets_;  ///< in the order of loading, which is that of their ids
   std::uint64_t lastId_ = 0;
   std::map<std::filesystem::path, Asset*> byFile_;

@@ -1,6 +1,7 @@
 #include "host/assets/asset_loader.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -39,15 +40,7 @@ ScriptResult nothing() {
 
 struct AssetLoader::Private {
   Private(scripting::ScriptEngine& engine, PathTokens& pathTokens, AssetTarget& assetTarget)
-      : graph(engine, pathTokens,
-              [&assetTarget](const std::string& identifier) {
-                if (assetTarget.hasNode(identifier)) {
-                  if (const Result<void> done = assetTarget.removeNode(identifier); !done) {
-                    log::error("{}", done.error().message());
-                  }
-                }
-              }),
-        target(&assetTarget) {}
+      : graph(engine, pathTokens), target(&assetTarget) {}
 
   AssetGraph graph;
   AssetTarget* target;
@@ -234,8 +227,18 @@ void AssetLoader::noteMissing(const fs::path& path) {
 
 void AssetLoader::noteNode(const Value& table) {
   if (const Value* identifier = table.find("Identifier"); identifier != nullptr && identifier->string() != nullptr) {
-    private_->graph.noteNode(*identifier->string());
+    noteRegistration("node " + *identifier->string(), [target = private_->target, node = *identifier->string()] {
+      if (target->hasNode(node)) {
+        if (const Result<void> done = target->removeNode(node); !done) {
+          log::error("{}", done.error().message());
+        }
+      }
+    });
   }
+}
+
+void AssetLoader::noteRegistration(std::string name, std::function<void()> takeBack) {
+  private_->graph.note({std::move(name), std::move(takeBack)});
 }
 
 bool AssetLoader::runsAsset() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -49,7 +50,7 @@ class AssetLoader {
   /// in asset.require. Adding it again does nothing. The error is that of the root; reports() has all of them.
   Result<void> add(std::string_view path);
   /// Runs onDeinitialize of a root asset and of what only it required, parents first; forgets them. Of one that failed
-  /// the nodes that it had added are removed instead.
+  /// what it had registered is taken back instead: nodes, actions, keys, layers.
   Result<void> remove(std::string_view path);
   void removeAll();
 
@@ -64,6 +65,8 @@ class AssetLoader {
   /// The code that runs now added a node by another way than `openspace.addSceneGraphNode`. Should its asset fail, the
   /// node goes with it.
   void noteNode(const Value& table);
+  /// Likewise whatever else has a name: see NoteRegistration.
+  void noteRegistration(std::string name, std::function<void()> takeBack);
 
   /// Folder of the asset whose code runs now; ${ASSETS} outside of one.
   [[nodiscard]] std::string currentFolder() const;

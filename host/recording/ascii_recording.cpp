@@ -30,11 +30,11 @@ class Lines {
     ++number_;
     return line;
   }
-  [[nodiscard]] int number() const { return number_; }
+  [[nodiscard]] std::size_t number() const { return number_; }
 
  private:
   std::string_view rest_;
-  int number_ = 1;  ///< the header was line 1
+  std::size_t number_ = 1;  ///< the header was line 1
 };
 
 /// Words of a line; remembers the first thing that was wrong.
@@ -101,7 +101,7 @@ class AsciiReader {
       if (kind.empty() || kind.starts_with('#')) {
         continue;
       }
-      const int number = lines_.number();
+      const std::size_t number = lines_.number();
       if (kind == "camera") {
         readCamera(words);
       } else if (kind == "script") {
@@ -168,6 +168,7 @@ class AsciiReader {
 
   void readScript(Words& words) {
     ScriptEntry entry;
+    entry.line = lines_.number();
     entry.timestamp = timestamp(words);
     entry.simulationTime = Time(words.number("the simulation time"));
     const double count = words.number("the number of lines");
@@ -197,7 +198,9 @@ class AsciiReader {
     const bool paused = words.either("P", "R");
     const bool jump = words.either("J", "-");
     if (words.trouble().empty()) {
-      recording_.entries.emplace_back(timeScript(stamp, simulation, delta, paused, jump));
+      ScriptEntry entry = timeScript(stamp, simulation, delta, paused, jump);
+      entry.line = lines_.number();
+      recording_.entries.emplace_back(std::move(entry));
     }
   }
 

@@ -81,7 +81,7 @@ void Player::runDueScripts() {
       return;
     }
     if (const auto* script = std::get_if<ScriptEntry>(&entry)) {
-      if (const auto run = runScript_(script->text); !run) {
+      if (const auto run = runScript_(*script); !run) {
         log::warning("the recording's script at {} s failed: {}", script->timestamp, run.error().message());
       }
     }

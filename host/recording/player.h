@@ -15,7 +15,7 @@ namespace meridian::recording {
 /// the position is interpolated linearly and the rotation spherically, about the node of the earlier one.
 class Player {
  public:
-  using RunScript = std::function<Result<void>(const std::string& text)>;
+  using RunScript = std::function<Result<void>(const ScriptEntry& script)>;
 
   /// The camera outlives the player. A script that fails is logged, and playback goes on.
   /// Errors: no camera entry; the first one's node is not in the scene.

@@ -2,9 +2,21 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "host/recording/session_recording.h"
 
 namespace meridian::recording {
+
+namespace {
+
+/// Under the name of the recording's file, so that errors name its lines.
+Result<void> runEntry(scripting::ScriptEngine& scripts, const std::filesystem::path& file, const ScriptEntry& script) {
+  return script.line > 0 ? scripts.run(std::string(script.line - 1, '\n') + script.text, file.string())
+                         : scripts.run(script.text, fmt::format("{}: script at {} s", file.string(), script.timestamp));
+}
+
+}  // namespace
 
 SessionControl::SessionControl(navigation::Camera& camera, scripting::Clock& clock, scripting::ScriptEngine& scripts)
     : camera_(camera), clock_(clock), scripts_(scripts) {
@@ -51,7 +63,7 @@ Result<void> SessionControl::startPlayback(const std::filesystem::path& file, bo
     return tl::make_unexpected(recording.error());
   }
   auto player = Player::create(std::move(*recording), camera_,
-                               [this](const std::string& text) { return scripts_.run(text, "recording"); });
+                               [this, file](const ScriptEntry& script) { return runEntry(scripts_, file, script); });
   if (!player) {
     Error error = player.error();
     if (error.where.empty()) {
@@ -84,6 +96,7 @@ void SessionControl::setPlaybackPause(bool paused) {
   }
   paused_ = paused;
   if (paused) {
+    pausedBy_ = scripts_.place();
     clockWasPaused_ = clock_.isPaused();
   }
   clock_.setPause(paused || clockWasPaused_);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "host/api/error.h"
 #include "host/navigation/camera.h"
@@ -35,6 +36,8 @@ class SessionControl {
   /// The clock pauses, too, and goes on as it was. Nothing without playback.
   void setPlaybackPause(bool paused);
   [[nodiscard]] bool isPlaybackPaused() const { return paused_; }
+  /// "CHUNK:LINE" of the script that paused it last, as in an Error; empty where no script did.
+  [[nodiscard]] const std::string& pausedBy() const { return pausedBy_; }
   /// Paused or not.
   [[nodiscard]] bool isPlaying() const { return player_ && !player_->finished(); }
 
@@ -56,6 +59,7 @@ class SessionControl {
   bool isInPlay_ = false;
   bool wantsStop_ = false;
   bool paused_ = false;
+  std::string pausedBy_;
   bool clockWasPaused_ = false;
 };
 

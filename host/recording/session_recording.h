@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -30,6 +31,7 @@ struct ScriptEntry {
   double timestamp = 0.0;
   Time simulationTime{};
   std::string text;
+  std::size_t line = 0;  ///< of its file, in which the text begins, from 1; 0: not known, or of no file of lines
 };
 
 /// A session recording: OpenSpace's format, versions 01.00, 02.00 and 03.00, ASCII and binary.

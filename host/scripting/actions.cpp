@@ -158,6 +158,12 @@ Result<void> KeyBindings::bind(std::string_view key, std::string action) {
   });
 }
 
+Result<void> KeyBindings::unbind(std::string_view key, std::string_view action) {
+  return spelled(key).map([&](const std::string& whole) {
+    std::erase_if(bindings_, [&](const auto& pair) { return pair.first == whole && pair.second == action; });
+  });
+}
+
 Result<void> KeyBindings::clear(std::string_view key) {
   return spelled(key).map([&](const std::string& whole) { bindings_.erase(whole); });
 }
@@ -191,12 +197,16 @@ std::vector<std::string> KeyBindings::keysOf(std::string_view action) const {
   return found;
 }
 
-ScriptLibrary actionLibrary(Actions& actions) {
+ScriptLibrary actionLibrary(Actions& actions, NoteRegistration note) {
   return {"action",
           {{"registerAction", "table", "Adds an action.", 1, 1,
-            [&actions](Arguments a) -> ScriptResult {
-              auto action = actionFrom(a[0]);
-              return action ? none(actions.add(std::move(*action))) : tl::make_unexpected(action.error());
+            [&actions, note = std::move(note)](Arguments a) -> ScriptResult {
+              const auto action = actionFrom(a[0]);
+              return none(action.and_then([&](const Action& made) { return actions.add(made); }).map([&] {
+                note("action " + action->identifier, [&actions, identifier = action->identifier] {
+                  static_cast<void>(actions.remove(identifier));  // it may be gone
+                });
+              }));
             }},
            {"removeAction", "identifier or table", "Removes an action.", 1, 1,
             [&actions](Arguments a) -> ScriptResult {
@@ -233,17 +243,21 @@ ScriptLibrary actionLibrary(Actions& actions) {
             }}}};
 }
 
-ScriptLibrary keyLibrary(KeyBindings& keys) {
+ScriptLibrary keyLibrary(KeyBindings& keys, NoteRegistration note) {
   return {
       "",
       {{"bindKey", "key, action", "Makes a key call an action.", 2, 2,
-        [&keys](Arguments a) -> ScriptResult {
+        [&keys, note = std::move(note)](Arguments a) -> ScriptResult {
           const auto key = textAt(a, 0, "key");
           const auto action = identifierAt(a, 1);
           if (!key || !action) {
             return tl::make_unexpected(!key ? key.error() : action.error());
           }
-          return none(keys.bind(*key, *action));
+          return none(keys.bind(*key, *action).map([&] {
+            note("key " + *key + ' ' + *action, [&keys, bound = *key, called = *action] {
+              static_cast<void>(keys.unbind(bound, called));  // the key is one, or it had not been bound
+            });
+          }));
         }},
        {"clearKey", "key or list of keys", "Makes a key call nothing.", 1, 1,
         [&keys](Arguments a) -> ScriptResult {

@@ -49,6 +49,8 @@ class KeyBindings {
 
   /// Errors: an empty key, a modifier other than Ctrl, Shift, Alt and Super.
   Result<void> bind(std::string_view key, std::string action);
+  /// The reverse. Errors: as above.
+  Result<void> unbind(std::string_view key, std::string_view action);
   /// Forgets what the key calls. Errors: as above.
   Result<void> clear(std::string_view key);
   void clearAll() { bindings_.clear(); }
@@ -63,9 +65,9 @@ class KeyBindings {
 };
 
 /// `openspace.action.*`: registerAction, removeAction, hasAction, action, actions, triggerAction. A second action of
-/// the same name is an error, as is triggering what is not there.
-[[nodiscard]] ScriptLibrary actionLibrary(Actions& actions);
-/// `openspace.*`: bindKey, clearKey, clearKeys, keyBindings, keyBindingsForAction.
-[[nodiscard]] ScriptLibrary keyLibrary(KeyBindings& keys);
+/// the same name is an error, as is triggering what is not there. `note` hears of each that is registered.
+[[nodiscard]] ScriptLibrary actionLibrary(Actions& actions, NoteRegistration note);
+/// `openspace.*`: bindKey, clearKey, clearKeys, keyBindings, keyBindingsForAction. `note` hears of each that is bound.
+[[nodiscard]] ScriptLibrary keyLibrary(KeyBindings& keys, NoteRegistration note);
 
 }  // namespace meridian::scripting

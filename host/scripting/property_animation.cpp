@@ -59,6 +59,12 @@ bool PropertyAnimation::isMoving(const Property& property) const {
                      [&](const Record& record) { return record.property == &property; });
 }
 
+bool PropertyAnimation::awaitsScript() const {
+  return std::any_of(records_.begin(), records_.end(), [](const Record& record) {
+    return !record.movement->bouncing && !record.movement->postScript.empty();
+  });
+}
+
 void PropertyAnimation::dropTheGone() {
   if (structureVersion_ == index_->structureVersion()) {
     return;

@@ -38,6 +38,8 @@ class PropertyAnimation {
   void advance(double seconds);
   [[nodiscard]] bool isMoving(const Property& property) const;
   [[nodiscard]] bool isIdle() const { return records_.empty(); }
+  /// Whether some movement will end and then run a script.
+  [[nodiscard]] bool awaitsScript() const;
   /// Where post scripts go.
   [[nodiscard]] const std::function<void(std::string)>& runLater() const { return runLater_; }
 

@@ -28,7 +28,7 @@ struct GeoJsonFiles {
   }
 };
 
-ScriptResult add(Host& host, GeoJsonFiles& files, Arguments arguments) {
+ScriptResult add(Host& host, const std::shared_ptr<GeoJsonFiles>& files, Arguments arguments) {
   using Type = Schema::Type;
   static const Schema schema({{"Identifier", Type::Identifier, "unique on the globe", true},
                               {"File", Type::String, "the path of a GeoJSON file", true}});
@@ -39,12 +39,14 @@ ScriptResult add(Host& host, GeoJsonFiles& files, Arguments arguments) {
   if (auto valid = schema.validate(arguments[1], "", "addGeoJson"); !valid) {
     return none(valid);
   }
-  const std::string& identifier = *arguments[1].find("Identifier")->string();
-  if (!files.known.emplace(*arguments[0].string(), identifier).second) {
-    return failure(fmt::format("{} has a GeoJSON \"{}\" already", *arguments[0].string(), identifier), {},
+  const std::pair file(*arguments[0].string(), *arguments[1].find("Identifier")->string());
+  if (!files->known.insert(file).second) {
+    return failure(fmt::format("{} has a GeoJSON \"{}\" already", file.first, file.second), {},
                    "choose another Identifier");
   }
-  files.tell();
+  host.noteRegistration(fmt::format("GeoJSON {} {}", file.first, file.second),
+                        [files, file] { files->known.erase(file); });
+  files->tell();
   return none({});
 }
 
@@ -65,7 +67,7 @@ ScriptResult remove(Host& host, GeoJsonFiles& files, Arguments arguments) {
 std::vector<ScriptFunction> geoJsonFunctions(Host& host) {
   const auto files = std::make_shared<GeoJsonFiles>();
   return {{"addGeoJson", "globe, table", "Keeps a GeoJSON file for a globe; it is not drawn", 2, 2,
-           [&host, files](Arguments a) { return add(host, *files, a); }},
+           [&host, files](Arguments a) { return add(host, files, a); }},
           {"deleteGeoJson", "globe, identifier or table", "Forgets a GeoJSON file", 2, 2,
            [&host, files](Arguments a) { return remove(host, *files, a); }},
           {"addGeoJsonFromFile", "file, name?", "Accepted; the file is not drawn", 1, 2,

@@ -287,30 +287,28 @@ void RenderableGlobe::addAttributions(std::vector<std::string_view>& list) const
   }
 }
 
-Result<void> RenderableGlobe::addLayer(const std::string& group, const ProviderRequest& request, bool isUsers) {
+Result<Layer*> RenderableGlobe::addLayer(const std::string& group, const ProviderRequest& request, bool isUsers) {
   const std::optional<NamedGroup> named = layerGroupFromName(group);
   const Value* identifier = request.table.find("Identifier");
   const bool isTaken = named && identifier != nullptr && identifier->string() != nullptr &&
                        layers_.group(named->group).find(*identifier->string()) != nullptr;
   if (isTaken) {
     log::info("{}: {} has a layer {} already; the other one is left out", request.where, group, *identifier->string());
-    return {};
+    return nullptr;
   }
   const Result<Layer*> added = layers_.addLayer(group, request);
-  if (!added && !named) {
-    return tl::make_unexpected(added.error());
-  }
   if (added && isUsers) {
     (*added)->setUsers();
   }
-  if (!added) {
-    log::error("{}", added.error().message());
-    layerErrors_.push_back(added.error());
-    if (identifier != nullptr && identifier->string() != nullptr) {
-      refused_.insert(*identifier->string());
-    }
+  if (added || !named) {
+    return added;
   }
-  return {};
+  log::error("{}", added.error().message());
+  layerErrors_.push_back(added.error());
+  if (identifier != nullptr && identifier->string() != nullptr) {
+    refused_.insert(*identifier->string());
+  }
+  return nullptr;
 }
 
 Renderable::Contents RenderableGlobe::contents() const {

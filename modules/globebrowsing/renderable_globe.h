@@ -31,9 +31,9 @@ class RenderableGlobe final : public Renderable, public Ground {
 
   [[nodiscard]] LayerManager& layers() { return layers_; }
   /// Adds a layer by its table, as scripts do: one that is wrong is logged, kept in layerErrors() and left out, and an
-  /// identifier that the group has is left out with a note in the log. `isUsers`: rather than an asset's. Errors: an
-  /// unknown group.
-  Result<void> addLayer(const std::string& group, const ProviderRequest& request, bool isUsers = false);
+  /// identifier that the group has is left out with a note in the log; null then. `isUsers`: rather than an asset's.
+  /// Errors: an unknown group.
+  Result<Layer*> addLayer(const std::string& group, const ProviderRequest& request, bool isUsers = false);
   [[nodiscard]] const std::vector<Error>& layerErrors() const { return layerErrors_; }
   /// Whether addLayer left out a layer of that name because its table was wrong.
   [[nodiscard]] bool wasRefused(const std::string& identifier) const { return refused_.count(identifier) != 0; }

@@ -23,6 +23,19 @@ Value withTokensReplaced(const Host& host, const Value& table) {
   });
 }
 
+void noteLayer(Host& host, const std::string& node, const Layer& layer) {
+  const auto takeBack = [&host, node, group = layer.group(), identifier = layer.identifier(),
+                         where = layer.request().where] {
+    const Result<RenderableGlobe*> found = globe(host, node);
+    const Layer* const present = found ? (*found)->layers().group(group).find(identifier) : nullptr;
+    // Another one may have its name by now.
+    if (present != nullptr && present->request().where == where) {
+      static_cast<void>((*found)->layers().deleteLayer(name(group), identifier));
+    }
+  };
+  host.noteRegistration(fmt::format("layer {} {} {}", node, name(layer.group()), layer.identifier()), takeBack);
+}
+
 }  // namespace
 
 Result<std::string> text(const Value& value, std::string_view argument) {
@@ -63,12 +76,19 @@ Result<void> addLayerFromScript(Host& host, const Value& node, const std::string
   if (!table.isTable()) {
     return failure(fmt::format("the layer must be a table, found {}", kindName(table.kind())));
   }
-  return globe(host, node).and_then([&](RenderableGlobe* found) {
-    Host::ScriptPlace place = host.scriptPlace();
-    return found->addLayer(
-        group, {withTokensReplaced(host, table), std::move(place.where), "addLayer " + group, std::move(place.folder)},
-        !place.isAsset);
-  });
+  return globe(host, node)
+      .and_then([&](RenderableGlobe* found) {
+        Host::ScriptPlace place = host.scriptPlace();
+        return found->addLayer(
+            group,
+            {withTokensReplaced(host, table), std::move(place.where), "addLayer " + group, std::move(place.folder)},
+            !place.isAsset);
+      })
+      .map([&](const Layer* added) {
+        if (added != nullptr) {
+          noteLayer(host, *node.string(), *added);
+        }
+      });
 }
 
 }  // namespace meridian::globebrowsing

@@ -66,7 +66,7 @@ void HeightComposition::beginFrame() {
     version_ = heights.settingsVersion();
     streamer_.forget(stream_);
     stream_ = streamer_.newStream();
-    gathered_.resize(heights.enabledLayers().size());
+    takeLayers();
     finer_.clear();
     lacks_.clear();
   }
@@ -79,47 +79,88 @@ void HeightComposition::beginFrame() {
     streamer_.forget(stream_);
     stream_ = streamer_.newStream();
   }
-  opening_.update(heights.enabledLayers());
-  for (const Layer* layer : heights.enabledLayers()) {
-    if (layer->isReady()) {
-      keepRoots(streamer_, *tiling_, streamOf(*layer->step()));
+  opening_.update(enabled());
+  for (std::size_t i = 0; i < enabled().size(); ++i) {
+    const Layer& layer = *enabled()[i];
+    if (layer.isReady()) {
+      const std::uint32_t stream = streamOf(*layer.step());
+      keepRoots(streamer_, *tiling_, stream);
+      if (shown_[i].step == layer.step() && streamer_.pending(stream) == 0) {
+        shown_[i].former.reset();
+      }
+    }
+    if (const LayerStep* former = formerOf(i)) {
+      keepRoots(streamer_, *tiling_, streamOf(*former));
     }
   }
+}
+
+void HeightComposition::takeLayers() {
+  std::vector<Shown> shown;
+  for (const Layer* layer : enabled()) {
+    const auto known =
+        std::find_if(shown_.begin(), shown_.end(), [&](const Shown& each) { return each.layer == layer; });
+    shown.push_back(known == shown_.end() ? Shown{layer, nullptr, nullptr} : std::move(*known));
+  }
+  shown_ = std::move(shown);
+  gathered_.resize(enabled().size());
 }
 
 std::uint32_t HeightComposition::streamOf(const LayerStep& step) const {
   return layout_ == reliefLayout ? step.reliefStream() : step.stream();
 }
 
+const LayerStep* HeightComposition::formerOf(std::size_t layer) const {
+  const Shown& shown = shown_[layer];
+  return shown.step != enabled()[layer]->step() ? shown.step.get() : shown.former.get();
+}
+
+const LayerStep* HeightComposition::sourceOf(std::size_t layer) const {
+  const Layer& asked = *enabled()[layer];
+  return asked.isReady() ? asked.step().get() : asked.isOpening() ? formerOf(layer) : nullptr;
+}
+
 Lack HeightComposition::gather(const TileIndex& index, double priority, bool showsEarlier) {
-  const std::vector<Layer*>& enabled = layers_.group(LayerGroupId::HeightLayers).enabledLayers();
   Lack lack;
-  for (std::size_t i = 0; i < enabled.size(); ++i) {
-    const Layer& layer = *enabled[i];
+  for (std::size_t i = 0; i < enabled().size(); ++i) {
     gathered_[i] = {};
-    if (layer.isReady() && layer.step()->tiles()->overlaps(*tiling_, index)) {
-      lack += gatherLayer(gathered_[i], layer, index, priority, showsEarlier);
+    const LayerStep* source = sourceOf(i);
+    if (source == nullptr || !source->tiles()->overlaps(*tiling_, index)) {
+      continue;
+    }
+    if (enabled()[i]->isReady()) {
+      lack += gatherLayer(i, index, priority, showsEarlier);
+    } else {  // all tiles are others once it is open
+      const StandIn standIn = findStandIn(streamer_, *tiling_, {streamOf(*source), index});
+      gathered_[i] = {standIn.tile, standIn.within};
     }
   }
   return lack;
 }
 
-Lack HeightComposition::gatherLayer(Gathered& gathered, const Layer& layer, const TileIndex& index, double priority,
-                                    bool showsEarlier) {
-  const LayerStep& step = *layer.step();
+Lack HeightComposition::gatherLayer(std::size_t layer, const TileIndex& index, double priority, bool showsEarlier) {
+  const Layer& asked = *enabled()[layer];
+  const LayerStep& step = *asked.step();
   const TileKey key{streamOf(step), index};
   const TileAnswer own = streamer_.request(
       key, priority, [&] { return std::make_unique<HeightJob>(step.tiles(), tiling_, index, layout_); });
   if (own.state != TileAnswer::State::Pending) {
-    gathered.tile = own.data;
+    gathered_[layer].tile = own.data;
+    if (Shown& shown = shown_[layer]; own.data != nullptr && shown.step != asked.step()) {
+      shown.former = std::exchange(shown.step, asked.step());
+    }
     return {};
   }
-  if (!own.isLate || (showsEarlier && layer.provider()->steps() != nullptr)) {
+  if (!own.isLate || (showsEarlier && asked.provider()->steps() != nullptr)) {
     return {Lack::everything, true};
   }
-  const StandIn standIn = findStandIn(streamer_, *tiling_, key);
-  gathered = {standIn.tile, standIn.within};
-  return {standIn.coarser};
+  StandIn standIn = findStandIn(streamer_, *tiling_, key);
+  if (const LayerStep* former = formerOf(layer)) {
+    const StandIn earlier = findStandIn(streamer_, *tiling_, {streamOf(*former), index});
+    standIn = earlier.coarser < standIn.coarser ? earlier : standIn;
+  }
+  gathered_[layer] = {standIn.tile, standIn.within};
+  return {std::max(standIn.coarser, 1U)};
 }
 
 unsigned HeightComposition::lack(const TileIndex& index) const {
@@ -148,12 +189,11 @@ TileAnswer HeightComposition::request(const TileIndex& index, double priority, b
     }
   }
   return streamer_.request(key, priority, [&] {
-    const std::vector<Layer*>& enabled = layers_.group(LayerGroupId::HeightLayers).enabledLayers();
     std::vector<HeightCompositionJob::Part> parts;
-    for (std::size_t i = 0; i < enabled.size(); ++i) {
+    for (std::size_t i = 0; i < enabled().size(); ++i) {
       if (gathered_[i].tile != nullptr) {
         parts.push_back(
-            {*gathered_[i].tile, enabled[i]->settings(), enabled[i]->effectiveOpacity(), gathered_[i].within});
+            {*gathered_[i].tile, enabled()[i]->settings(), enabled()[i]->effectiveOpacity(), gathered_[i].within});
       }
     }
     return std::make_unique<HeightCompositionJob>(HeightCompositionJob::Target{tiling_, index, layout_, make_},
@@ -165,10 +205,11 @@ bool HeightComposition::hasFiner(const TileIndex& index) const {
   if (const auto found = finer_.find(index); found != finer_.end()) {
     return found->second;
   }
-  const std::vector<Layer*>& enabled = layers_.group(LayerGroupId::HeightLayers).enabledLayers();
-  const bool finer = std::any_of(enabled.begin(), enabled.end(), [&](const Layer* layer) {
-    return layer->isReady() && layer->step()->tiles()->hasFiner(*tiling_, index, layout_);
-  });
+  bool finer = false;
+  for (std::size_t i = 0; i < enabled().size() && !finer; ++i) {
+    const LayerStep* source = sourceOf(i);
+    finer = source != nullptr && source->tiles()->hasFiner(*tiling_, index, layout_);
+  }
   return finer_.emplace(index, finer).first->second;
 }
 

@@ -15,8 +15,8 @@ namespace meridian::globebrowsing {
 
 /// Tiles made of the heights of all height layers, in one layout: asks for the raw heights of every enabled layer, and
 /// has a worker compose them and make the tile. When heights change (a layer toggled, a setting), all tiles are others.
-/// What is late is left out, or an ancestor's heights stand in for it; who goes on asking has the tile made anew when
-/// more has come.
+/// What is late is left out, or an ancestor's heights stand in for it, or those that the layer showed before its data
+/// were opened anew; who goes on asking has the tile made anew when more has come.
 /// Render thread only; a steady frame allocates nothing.
 class HeightComposition {
  public:
@@ -48,10 +48,27 @@ class HeightComposition {
     UnitSquareTransform within;
   };
 
+  /// What a layer showed, to stand in for what is late of what it shows now.
+  struct Shown {
+    const Layer* layer = nullptr;  ///< only to be compared
+    LayerStepPointer step;         ///< that gave heights last
+    LayerStepPointer former;       ///< and the one before it, until all that was asked of `step` has come
+  };
+
+  [[nodiscard]] const std::vector<Layer*>& enabled() const {
+    return layers_.group(LayerGroupId::HeightLayers).enabledLayers();
+  }
+  /// For other layers.
+  void takeLayers();
   [[nodiscard]] std::uint32_t streamOf(const LayerStep& step) const;
+  /// What an enabled layer showed before its present step; null where there is nothing to go back to.
+  [[nodiscard]] const LayerStep* formerOf(std::size_t layer) const;
+  /// Where an enabled layer's tiles come from: its step, or as long as that is being opened formerOf; may be null.
+  [[nodiscard]] const LayerStep* sourceOf(std::size_t layer) const;
   /// Looks for the raw heights of all layers, asks for those that are missing, and tells what they are.
   Lack gather(const TileIndex& index, double priority, bool showsEarlier);
-  Lack gatherLayer(Gathered& gathered, const Layer& layer, const TileIndex& index, double priority, bool showsEarlier);
+  /// The same of one enabled layer that is ready.
+  Lack gatherLayer(std::size_t layer, const TileIndex& index, double priority, bool showsEarlier);
 
   std::shared_ptr<const Tiling> tiling_;
   LayerManager& layers_;
@@ -61,6 +78,7 @@ class HeightComposition {
   mutable std::unordered_map<TileIndex, bool> finer_;  ///< what hasFiner found; asked for every frame
   std::unordered_map<TileIndex, unsigned> lacks_;      ///< of tiles that were made while something was late
   std::vector<Gathered> gathered_;                     ///< by enabled height layer, of the tile being looked at
+  std::vector<Shown> shown_;                           ///< by enabled height layer
   OpeningWait opening_;
   std::uint64_t version_ = 0;  ///< of the height layers
   std::uint32_t stream_ = 0;

@@ -2,23 +2,26 @@
 
 namespace meridian::globebrowsing {
 
-StandIn findStandIn(TileStreamer& streamer, const Tiling& tiling, const TileKey& pending) {
+StandIn findStandIn(TileStreamer& streamer, const Tiling& tiling, const TileKey& wanted) {
   StandIn found;
-  TileIndex index = pending.index;
-  while (const std::optional<TileIndex> parent = tiling.parent(index)) {
-    found.within = found.within.then(tiling.inParent(index));
-    index = *parent;
-    const TileKey key{pending.stream, index};
+  TileIndex index = wanted.index;
+  while (true) {
+    const TileKey key{wanted.stream, index};
     const TileAnswer answer = streamer.peek(key);
     if (answer.state == TileAnswer::State::Ready) {
       streamer.touch(key);
       found.tile = answer.data;
       found.index = index;
-      found.coarser = static_cast<unsigned>(pending.index.level - index.level);
+      found.coarser = static_cast<unsigned>(wanted.index.level - index.level);
       return found;
     }
+    const std::optional<TileIndex> parent = tiling.parent(index);
+    if (!parent) {
+      return {};
+    }
+    found.within = found.within.then(tiling.inParent(index));
+    index = *parent;
   }
-  return {};
 }
 
 void keepRoots(TileStreamer& streamer, const Tiling& tiling, std::uint32_t stream) {

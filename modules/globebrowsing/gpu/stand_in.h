@@ -20,14 +20,14 @@ struct Lack {
   }
 };
 
-/// What is drawn in place of a raw tile that is pending: that of its nearest ancestor that is in memory.
+/// What is drawn in place of a raw tile: that of its nearest ancestor, or itself, that is in memory.
 struct StandIn {
   const TileDataPointer* tile = nullptr;  ///< null without any; good until the streamer's endFrame
   TileIndex index;
-  UnitSquareTransform within;  ///< of the pending tile in the stand-in
+  UnitSquareTransform within;  ///< of the wanted tile in the stand-in
   unsigned coarser = Lack::everything;
 };
-[[nodiscard]] StandIn findStandIn(TileStreamer& streamer, const Tiling& tiling, const TileKey& pending);
+[[nodiscard]] StandIn findStandIn(TileStreamer& streamer, const Tiling& tiling, const TileKey& wanted);
 
 /// Every frame: keeps the stream's root tiles in memory, so that there is a stand-in wherever the layer ever showed.
 void keepRoots(TileStreamer& streamer, const Tiling& tiling, std::uint32_t stream);

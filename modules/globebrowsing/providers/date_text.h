@@ -8,7 +8,7 @@
 namespace meridian::globebrowsing {
 
 /// Reads a date as assets write them: what Time::fromUtc reads, and "2004", "2004-03", "2004-061" (a day of the year,
-/// also with a time of day after a T), "2004 Mar 1" (with or without a time of day after a blank).
+/// also with a time of day after a T).
 [[nodiscard]] Result<Time::UtcInstant> readDate(std::string_view text);
 
 }  // namespace meridian::globebrowsing

@@ -46,186 +46,9 @@ std::int64_t daysOfMonth(std::int64_t year, std::int64_t month) {
   return static_cast<unsigned>(last.day());
 }
 
-/// Takes text from its front.
-class Reader {
- public:
-  explicit Reader(std::string_view text) : rest_(text) {}
-
-  bool take(std::string_view any) {
-    if (rest_.empty() || any.find(rest_.front()) == std::string_view::npos) {
-      return false;
-    }
-    rest_.remove_prefix(1);
-    return true;
-  }
-  std::optional<std::int64_t> digits(std::size_t count) {
-    std::int64_t value = 0;
-    if (rest_.size() < count) {
-      return std::nullopt;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      if (rest_[i] < '0' || rest_[i] > '9') {
-        return std::nullopt;
-      }
-      value = 10 * value + (rest_[i] - '0');
-    }
-    rest_.remove_prefix(count);
-    return value;
-  }
-  [[nodiscard]] std::size_t digitsAhead() const {
-    return std::min(rest_.find_first_not_of("0123456789"), rest_.size());
-  }
-  [[nodiscard]] bool atEnd() const { return rest_.empty(); }
-
- private:
-  std::string_view rest_;
-};
-
-/// The parts of an instant as they stand in the text.
-struct Parts {
-  std::int64_t year = 0;
-  std::int64_t month = 1;
-  std::int64_t day = 1;
-  std::int64_t hour = 0;
-  std::int64_t minute = 0;
-  std::int64_t second = 0;
-  std::int64_t milliseconds = 0;
-  std::int64_t zoneMinutes = 0;
-};
-
 constexpr std::int64_t furthestYear = 20'000;
 
-/// The Monday of a year's first week, which is the one with January 4.
-CalendarMilliseconds firstMonday(std::int64_t year) {
-  using namespace std::chrono;
-  const sys_days fourth = std::chrono::year(static_cast<int>(year)) / 1 / 4;
-  return (fourth - (weekday(fourth) - Monday)).time_since_epoch().count() * day;
-}
-
-void setDate(Parts& parts, CalendarMilliseconds at) {
-  const Date date = dateOf(at);
-  parts.year = date.year;
-  parts.month = date.month;
-  parts.day = date.day;
-}
-
-/// What follows the W.
-bool readWeek(Reader& reader, Parts& parts, CalendarStyle& style) {
-  style.form = CalendarForm::WeekAndDay;
-  style.parts = 2;
-  const auto week = reader.digits(2);
-  std::optional<std::int64_t> ofWeek = 1;
-  if (style.isBasic ? reader.digitsAhead() > 0 : reader.take("-")) {
-    ofWeek = reader.digits(1);
-    style.parts = 3;
-  }
-  if (!week || *week < 1 || !ofWeek || *ofWeek < 1 || *ofWeek > 7 || std::abs(parts.year) > furthestYear) {
-    return false;
-  }
-  const CalendarMilliseconds monday = firstMonday(parts.year) + (*week - 1) * 7 * day;
-  const bool hasWeek = monday < firstMonday(parts.year + 1);
-  setDate(parts, monday + (*ofWeek - 1) * day);
-  return hasWeek;
-}
-
-bool readDayOfYear(Reader& reader, Parts& parts, CalendarStyle& style) {
-  style.form = CalendarForm::DayOfYear;
-  style.parts = 3;
-  const std::int64_t year = parts.year;
-  const auto ofYear = reader.digits(3);
-  if (!ofYear || *ofYear < 1 || std::abs(year) > furthestYear) {
-    return false;
-  }
-  setDate(parts, fromDate(year, 1, 1) + (*ofYear - 1) * day);
-  return parts.year == year;
-}
-
-bool readDate(Reader& reader, Parts& parts, CalendarStyle& style) {
-  const bool isNegative = reader.take("-");
-  const std::size_t ahead = reader.digitsAhead();
-  style.isBasic = (ahead >= 6 && ahead <= 8) || (ahead > 8 && !isNegative);
-  const auto year = reader.digits(style.isBasic || ahead < 4 ? 4 : ahead);
-  if (!year || (ahead != 4 && ahead != 5 && !style.isBasic)) {
-    return false;
-  }
-  parts.year = isNegative ? -*year : *year;
-  style.parts = 1;
-  const bool hasDash = !style.isBasic && reader.take("-");
-  if (!style.isBasic && reader.take("Ww")) {
-    style.isBasic = !hasDash;
-    return readWeek(reader, parts, style);
-  }
-  if ((style.isBasic || hasDash) && reader.digitsAhead() == 3) {
-    return readDayOfYear(reader, parts, style);
-  }
-  for (std::int64_t* part : {&parts.month, &parts.day}) {
-    const bool isFirst = part == &parts.month;
-    if (style.isBasic ? reader.digitsAhead() < 2 : !(isFirst ? hasDash : reader.take("-"))) {
-      return true;
-    }
-    const auto value = reader.digits(2);
-    if (!value) {
-      return false;
-    }
-    *part = *value;
-    ++style.parts;
-  }
-  return true;
-}
-
-bool readFraction(Reader& reader, Parts& parts, CalendarStyle& style) {
-  const std::size_t count = reader.digitsAhead();
-  if (count == 0) {
-    return false;
-  }
-  std::int64_t unit = second;
-  for (std::size_t i = 0; i < count; ++i) {
-    unit /= 10;
-    parts.milliseconds += unit * *reader.digits(1);
-  }
-  style.parts = 7;
-  style.fractionDigits = static_cast<int>(std::min<std::size_t>(count, 3));
-  return true;
-}
-
-bool readTimeOfDay(Reader& reader, Parts& parts, CalendarStyle& style) {
-  bool isFirst = true;
-  for (std::int64_t* part : {&parts.hour, &parts.minute, &parts.second}) {
-    if (!isFirst && (style.isBasic ? reader.digitsAhead() < 2 : !reader.take(":"))) {
-      break;
-    }
-    const auto value = reader.digits(2);
-    if (!value) {
-      return false;
-    }
-    *part = *value;
-    ++style.parts;
-    isFirst = false;
-  }
-  return style.parts < 6 || !reader.take(".,") || readFraction(reader, parts, style);
-}
-
-bool readZone(Reader& reader, Parts& parts, CalendarStyle& style) {
-  if (reader.take("Zz")) {
-    style.hasZone = true;
-    return true;
-  }
-  const bool isEast = reader.take("+");
-  if (!isEast && !reader.take("-")) {
-    return true;
-  }
-  const auto hours = reader.digits(2);
-  reader.take(":");
-  const auto minutes = reader.atEnd() ? std::optional<std::int64_t>(0) : reader.digits(2);
-  if (!hours || !minutes) {
-    return false;
-  }
-  parts.zoneMinutes = (*hours * 60 + *minutes) * (isEast ? 1 : -1);
-  style.hasZone = true;  // it is written back in UTC
-  return true;
-}
-
-bool isOfCalendar(const Parts& parts) {
+bool isOfCalendar(const CalendarText& parts) {
   const bool isMidnight = parts.hour == 24 && parts.minute == 0 && parts.second == 0;
   return std::abs(parts.year) <= furthestYear && parts.month >= 1 && parts.month <= 12 && parts.day >= 1 &&
          parts.day <= daysOfMonth(parts.year, parts.month) && (parts.hour <= 23 || isMidnight) && parts.minute <= 59 &&
@@ -238,10 +61,11 @@ std::string writeYear(std::int64_t year) {
 
 std::string writeWeek(CalendarMilliseconds midnight, const CalendarStyle& style, std::string_view dash) {
   std::int64_t year = dateOf(midnight).year + 1;  // the first and the last days of a year may be another's
-  while (firstMonday(year) > midnight) {
+  const auto monday = [&] { return firstMonday(static_cast<int>(year)).time_since_epoch().count() * day; };
+  while (monday() > midnight) {
     --year;
   }
-  const std::int64_t days = (midnight - firstMonday(year)) / day;
+  const std::int64_t days = (midnight - monday()) / day;
   std::string text = fmt::format("{}{}W{:02}", writeYear(year), dash, days / 7 + 1);
   return style.parts >= 3 ? text + fmt::format("{}{}", dash, days % 7 + 1) : text;
 }
@@ -268,28 +92,14 @@ std::string writeDate(CalendarMilliseconds midnight, const CalendarStyle& style)
 }  // namespace
 
 std::optional<CalendarInstant> readInstant(std::string_view text) {
-  text = trimmed(text);
-  Reader reader(text);
-  Parts parts;
-  CalendarInstant instant;
-  if (!readDate(reader, parts, instant.style)) {
+  const std::optional<CalendarText> read = readCalendarText(text);
+  if (!read || !read->isIso || !isOfCalendar(*read)) {
     return std::nullopt;
   }
-  if (!reader.atEnd() && instant.style.parts == 3) {
-    const bool hasBlank = text.find(' ') != std::string_view::npos;
-    if (reader.take("Tt ")) {
-      instant.style.separator = hasBlank ? ' ' : 'T';
-      if (!readTimeOfDay(reader, parts, instant.style)) {
-        return std::nullopt;
-      }
-    }
-  }
-  if (!readZone(reader, parts, instant.style) || !reader.atEnd() || !isOfCalendar(parts)) {
-    return std::nullopt;
-  }
-  instant.at = fromDate(parts.year, parts.month, parts.day) + parts.hour * hour +
-               (parts.minute - parts.zoneMinutes) * minute + parts.second * second + parts.milliseconds;
-  return instant;
+  return CalendarInstant{fromDate(read->year, read->month, read->day) + read->hour * hour +
+                             (read->minute - read->zoneMinutes) * minute + read->second * second +
+                             read->nanoseconds / 1'000'000,
+                         read->style};
 }
 
 std::optional<CalendarPeriod> readPeriod(std::string_view text) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "host/api/calendar_text.h"
 #include "host/api/time.h"
 
 namespace meridian::globebrowsing {
@@ -22,28 +23,13 @@ struct CalendarPeriod {
   bool operator==(const CalendarPeriod&) const = default;
 };
 
-/// Of dates in ISO 8601: 2024-01-31, 2024-W05-3 (the Wednesday of the fifth week), 2024-031 (the day of the year).
-enum class CalendarForm : std::uint8_t { MonthAndDay, WeekAndDay, DayOfYear };
-
-/// How a service writes its instants, so that we ask for them as it does.
-struct CalendarStyle {
-  /// Parts that are written: 1 year, 2 month or week, 3 day, 4 hour, 5 minute, 6 second, 7 fraction of a second.
-  int parts = 3;
-  int fractionDigits = 3;
-  bool isBasic = false;  ///< 20110805T1200 rather than 2011-08-05T12:00
-  bool hasZone = false;  ///< ends in Z
-  char separator = 'T';
-  CalendarForm form = CalendarForm::MonthAndDay;
-};
-
 struct CalendarInstant {
   CalendarMilliseconds at = 0;
-  CalendarStyle style{};
+  CalendarStyle style{};  ///< how a service writes its instants, so that we ask for them as it does
 };
 
-/// Reads ISO 8601 as far as services use it: extended and basic, by month, week or day of the year, cut short after any
-/// part ("2007-05", "1990", "2024-W05"), with a zone or without (then UTC). Nothing for anything else, and for dates
-/// that the calendar does not have.
+/// Reads ISO 8601 by readCalendarText; without a zone it is UTC. Nothing for anything else, and for dates that the
+/// calendar does not have.
 [[nodiscard]] std::optional<CalendarInstant> readInstant(std::string_view text);
 [[nodiscard]] std::optional<CalendarPeriod> readPeriod(std::string_view text);
 [[nodiscard]] std::string writeInstant(CalendarMilliseconds at, const CalendarStyle& style);

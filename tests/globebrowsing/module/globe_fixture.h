@@ -64,7 +64,7 @@ class FakeHost final : public Host {
     return names;
   }
 
-  [[nodiscard]] ScriptPlace scriptPlace() const override { return {"test.lua:1", folder, isAsset}; }
+  [[nodiscard]] ScriptPlace scriptPlace() const override { return {place, folder, isAsset}; }
   [[nodiscard]] Result<std::filesystem::path> readablePath(std::string_view path) const override {
     return std::filesystem::path(path).is_absolute() ? std::filesystem::path(path)
                                                      : folder / std::filesystem::path(path);
@@ -81,6 +81,12 @@ class FakeHost final : public Host {
     return {};
   }
 
+  void noteRegistration(std::string name, std::function<void()> takeBack) override {
+    registrations[std::move(name)] = std::move(takeBack);
+  }
+
+  std::map<std::string, std::function<void()>> registrations;
+  std::string place = "test.lua:1";  ///< of the script that runs
   std::string folder;
   bool isAsset = false;  ///< as what scripts run
   std::vector<Value> addedNodes;

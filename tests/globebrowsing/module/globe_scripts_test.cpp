@@ -108,6 +108,29 @@ TEST_F(GlobeScripts, LayersThatAreWrongAreDroppedAndKept) {
   EXPECT_THAT(contents.layers[1].unusable->message(), HasSubstr("NoSuchType"));
 }
 
+TEST_F(GlobeScripts, WhatAnAssetAddedCanBeTakenBack) {
+  const std::string add = "addLayer('Earth', 'ColorLayers', { Identifier = 'A', FilePath = 'a.tif' })";
+  host_.isAsset = true;
+  ASSERT_EQ(run(add), "");
+  const auto takeBack = host_.registrations.at("layer Earth ColorLayers A");
+  host_.registrations.clear();
+  ASSERT_EQ(run(add), "") << "it is left out";
+  EXPECT_TRUE(host_.registrations.empty());
+  takeBack();
+  EXPECT_TRUE(group("Earth", LayerGroupId::ColorLayers).layers().empty());
+  takeBack();
+  host_.place = "other.lua:1";
+  ASSERT_EQ(run(add), "");
+  takeBack();
+  EXPECT_EQ(group("Earth", LayerGroupId::ColorLayers).layers().size(), 1U) << "that is another one";
+
+  const std::string addGeoJson = "addGeoJson('Earth', { Identifier = 'G', File = 'g.json' })";
+  ASSERT_EQ(run(addGeoJson), "");
+  EXPECT_NE(run(addGeoJson), "");
+  host_.registrations.at("GeoJSON Earth G")();
+  EXPECT_EQ(run(addGeoJson), "");
+}
+
 TEST_F(GlobeScripts, UnknownKeysAreNoted) {
   EXPECT_EQ(run("addLayer('Earth', 'ColorLayers', { Identifier = 'A', FilePath = 'a.tif', Enable = true, PadTiles = "
                 "false, Strange = 1 })"),

@@ -141,6 +141,38 @@ TEST_F(LateLayersTest, TheGlobeIsSmoothUntilItsHeightsAreThere) {
   EXPECT_NEAR(globe.ground()->heightAt(0.4, 1.2), WorldRaster::value(0, 1.2, 0.4), 3.0);
 }
 
+TEST_F(LateLayersTest, HeightsStayWhileTheirDataAreOpenedAnew) {
+  RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({fileLayer("Local", uniformRaster("local.tif", local))})},
+                                     {"HeightLayers", listOf({fileLayer("World", document_)})}});
+  startServer();
+  look(0.4, 1.2, 8e6);
+  ASSERT_TRUE(settle());
+  Layer& world = *globe.layers().group(LayerGroupId::HeightLayers).find("World");
+  const double shown = WorldRaster::value(0, 1.2, 0.4);
+  // What the first server sent is in memory: so another one, which does not answer yet.
+  server_.reset();
+  const int later = freePort();
+  ASSERT_TRUE(world.propertyAt("TileProvider.FilePath")
+                  ->set(WorldRaster::document("http://127.0.0.1:" + std::to_string(later))));
+  world.reset.fire();
+  const auto end = std::chrono::steady_clock::now() + 3 * TileStreamer::patience;
+  ASSERT_TRUE(framesUntil([&] {
+    EXPECT_NEAR(globe.ground()->heightAt(0.4, 1.2), shown, 3.0);
+    return testing::Test::HasFailure() || std::chrono::steady_clock::now() > end;
+  }));
+  EXPECT_NE(unsettled(), "");
+  world.multiplier.put(0.5);
+  EXPECT_TRUE(framesUntil([&] { return std::abs(globe.ground()->heightAt(0.4, 1.2) - 0.5 * shown) < 2.0; }))
+      << "it can be adjusted meanwhile";
+  EXPECT_NE(unsettled(), "");
+
+  world.multiplier.put(1.0);
+  world.offset.put(1000.0);
+  server_ = std::make_unique<ServerProcess>(ServerProcess::fileServer((folder_ / "tiles").string(), later), later);
+  ASSERT_TRUE(settle());
+  EXPECT_NEAR(globe.ground()->heightAt(0.4, 1.2), shown + 1000.0, 3.0);
+}
+
 TEST_F(LateLayersTest, ColoursOfHeightsFollowWhenTheHeightsCome) {
   const Value ramp = tableOf({{"Identifier", "Ramp"},
                               {"Type", "ColorRelief"},

@@ -162,6 +162,44 @@ TEST_F(CommandLine, ABadAssetDoesNotTakeTheOthersDown) {
   EXPECT_TRUE(fs::exists(in("picture.png")));
 }
 
+TEST_F(CommandLine, AnAssetThatFailedIsReloadedWholly) {
+  write("globe.asset", R"(
+    local globe = { Identifier = "Globe", Renderable = { Type = "RenderableGlobe", Radii = 6e6 } }
+    asset.onInitialize(function() openspace.addSceneGraphNode(globe) end)
+    asset.onDeinitialize(function() openspace.removeSceneGraphNode(globe) end)
+  )");
+  const bool hasGlobes = run("--validate globe.asset").out.find("globes 1") != std::string::npos;
+  write("parts.asset", R"(
+    asset.onInitialize(function()
+      openspace.action.registerAction({ Identifier = "hello", Command = "" })
+      openspace.bindKey(isMended and "F6" or "F5", "hello")
+      if openspace.hasSceneGraphNode("Globe") then
+        openspace.globebrowsing.addLayer("Globe", "ColorLayers", { Identifier = isMended and "Good" or "Bad",
+          Type = "SolidColor", Color = { 1, 1, 1 } })
+      end
+      assert(isMended, "not mended")
+    end)
+  )");
+  write("mend.lua", R"(
+    isMended = true
+    openspace.asset.reload("parts.asset")
+    openspace.printInfo("keys " .. table.concat(openspace.keyBindingsForAction("hello"), " "))
+    if openspace.hasSceneGraphNode("Globe") then
+      openspace.printInfo("layers " .. table.concat(openspace.globebrowsing.layers("Globe", "ColorLayers"), " "))
+    end
+  )");
+  emptyScene();
+  const Outcome outcome = run(std::string(hasGlobes ? "globe.asset" : "empty.asset") +
+                              " parts.asset --headless --size 8x8 --script mend.lua --output picture.png");
+  EXPECT_EQ(outcome.code, 1) << "it had failed";
+  EXPECT_THAT(outcome.errors, HasSubstr("not mended"));
+  EXPECT_TRUE(fs::exists(in("picture.png"))) << outcome.errors;
+  EXPECT_THAT(outcome.errors, HasSubstr("keys F6\n"));
+  if (hasGlobes) {
+    EXPECT_THAT(outcome.errors, HasSubstr("layers Good\n"));
+  }
+}
+
 TEST_F(CommandLine, ValidateCountsAndEndsWithThree) {
   write("assets/good.asset", "asset.export('number', 3)\n");
   write("assets/below/bad.asset", "local = 3\n");
@@ -302,6 +340,47 @@ TEST_F(CommandLine, ARecordingThatStopsItselfEndsTheRun) {
   ASSERT_EQ(outcome.code, 0) << outcome.errors;
   EXPECT_TRUE(fs::exists(in("frames/frame_000003.png")));
   EXPECT_FALSE(fs::exists(in("frames/frame_000004.png")));
+}
+
+/// A recording of half a second that pauses itself after a quarter of one, and what else it does then.
+std::string pausingFlight(const std::string& more) {
+  return "OpenSpace_record/playback03.00A\n"
+         "camera 0.0 0.0 0.0 0.0 5000.0 0.0 0.0 0.0 1.0 1.0 - Place\n"
+         "script 0.25 0.25 1 openspace.sessionRecording.setPlaybackPause(true) " +
+         more + "\ncamera 0.5 0.5 0.0 0.0 3000.0 0.0 0.0 0.0 1.0 1.0 - Place\n";
+}
+
+TEST_F(CommandLine, ARecordingThatPausesForGoodFails) {
+  emptyScene();
+  write("flight.osrectxt", pausingFlight(""));
+  const std::string arguments = "empty.asset --headless --size 64x64 --play flight.osrectxt --fps 10 --output ";
+  const Outcome outcome = run(arguments + "frames.mkv");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("flight.osrectxt:3: the playback was paused"));
+  EXPECT_GT(fs::file_size(in("frames.mkv")), 100U) << "what was drawn is kept";
+  const Outcome counted = run(arguments + "frames --frames 6");
+  EXPECT_EQ(counted.code, 0) << counted.errors;
+  EXPECT_TRUE(fs::exists(in("frames/frame_000005.png")));
+}
+
+TEST_F(CommandLine, APauseOfARecordingThatSomethingEndsDoesNotEndTheRun) {
+  emptyScene();
+  const std::string goOn = "openspace.sessionRecording.setPlaybackPause(false)";
+  const std::pair<std::string, int> cases[] = {
+      // By the next frame's script, by that of a movement of three frames, by a later entry of the same frame.
+      {"openspace.action.registerAction({ Identifier = 'on', Command = '" + goOn +
+           "' }) openspace.action.triggerAction('on')",
+       5},
+      {"openspace.setPropertyValueSingle('Navigation.Sensitivity', 2.0, 0.3, 'Linear', '" + goOn + "')", 8},
+      {"\nscript 0.26 0.26 1 " + goOn, 5}};
+  for (const auto& [more, last] : cases) {
+    write("flight.osrectxt", pausingFlight(more));
+    fs::remove_all(in("frames"));
+    const Outcome outcome = run("empty.asset --headless --size 8x8 --play flight.osrectxt --fps 10 --output frames");
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    EXPECT_TRUE(fs::exists(in("frames/frame_00000" + std::to_string(last) + ".png"))) << more;
+    EXPECT_FALSE(fs::exists(in("frames/frame_00000" + std::to_string(last + 1) + ".png"))) << more;
+  }
 }
 
 TEST_F(CommandLine, AFullDiskEndsTheRunOnlyWithRecord) {

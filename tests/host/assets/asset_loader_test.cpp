@@ -6,6 +6,7 @@
 
 #include "host/assets/file_scripts.h"
 #include "host/assets/validate.h"
+#include "host/scripting/actions.h"
 #include "temporary_folder.h"
 
 namespace meridian::assets {
@@ -47,6 +48,11 @@ class AssetLoaderTest : public testing::Test {
                                      notes_ += ' ';
                                      return {};
                                    }}}});
+    const NoteRegistration note = [this](std::string name, std::function<void()> takeBack) {
+      loader_.noteRegistration(std::move(name), std::move(takeBack));
+    };
+    engine_.registerLibrary(scripting::actionLibrary(actions_, note));
+    engine_.registerLibrary(scripting::keyLibrary(keys_, note));
   }
   Error errorOf(std::string_view path) {
     const Result<void> result = loader_.add(path);
@@ -67,6 +73,8 @@ class AssetLoaderTest : public testing::Test {
   scripting::ScriptEngine engine_{{std::size_t{64} << 20, 5'000'000}};
   PathTokens tokens_;
   RecordedTarget target_;
+  scripting::Actions actions_{engine_};
+  scripting::KeyBindings keys_{actions_};
   AssetLoader loader_{engine_, tokens_, target_};
   std::string notes_;
   std::vector<AssetReport> reports_;
@@ -404,6 +412,42 @@ TEST_F(AssetLoaderTest, AFailedAssetTakesNoNodeOfAnotherWithIt) {
   ASSERT_TRUE(loader_.remove("b"));
   ASSERT_TRUE(loader_.remove("c"));
   EXPECT_EQ(target_.nodes, (std::vector<std::string>{"Earth", "Mars"}));
+}
+
+TEST_F(AssetLoaderTest, AnAssetThatFailedAfterRegisteringActionsAndKeysCanBeReloaded) {
+  const auto asset = [&](const std::string& key, const std::string& end) {
+    folder_.write(
+        "a.asset",
+        "openspace.action.registerAction({ Identifier = 'sun', Command = '' })\n"
+        "asset.onInitialize(function() openspace.action.registerAction({ Identifier = 'moon', Command = '' })\n"
+        "openspace.bindKey('" +
+            key + "', 'sun') " + end + " end)");
+  };
+  asset("Ctrl+S", "error('broken')");
+  EXPECT_FALSE(loader_.add("a"));
+  asset("Ctrl+T", "");
+  const Result<void> again = engine_.run("openspace.asset.reload('a')", "test");
+  ASSERT_TRUE(again) << again.error().message();
+  EXPECT_NE(actions_.find("sun"), nullptr);
+  EXPECT_NE(actions_.find("moon"), nullptr);
+  EXPECT_EQ(keys_.keysOf("sun"), std::vector<std::string>{"CTRL+T"});
+}
+
+TEST_F(AssetLoaderTest, AFailedAssetTakesNothingWithItThatIsAnothersByNow) {
+  folder_.write("a.asset",
+                "openspace.action.registerAction({ Identifier = 'sun', Command = '' })\n"
+                "openspace.addSceneGraphNode({ Identifier = 'Mars' }) error('broken')");
+  EXPECT_FALSE(loader_.add("a"));
+  // No asset registers these, so that none takes them over.
+  ASSERT_TRUE(
+      engine_.run("openspace.action.removeAction('sun')\n"
+                  "openspace.action.registerAction({ Identifier = 'sun', Command = 'mine' })\n"
+                  "openspace.removeSceneGraphNode('Mars') openspace.addSceneGraphNode({ Identifier = 'Mars' })",
+                  "test"));
+  ASSERT_TRUE(loader_.remove("a"));
+  ASSERT_NE(actions_.find("sun"), nullptr);
+  EXPECT_EQ(actions_.find("sun")->command, "mine");
+  EXPECT_EQ(target_.nodes, std::vector<std::string>{"Mars"});
 }
 
 TEST_F(AssetLoaderTest, FindsTheAssetsFolder) {

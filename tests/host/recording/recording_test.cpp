@@ -205,9 +205,9 @@ TEST(Player, InterpolatesAboutTheEarlierNodeAndRunsScriptsInOrder) {
     return entry;
   }();
   std::vector<std::string> ran;
-  auto player = Player::create(recording, camera, [&](const std::string& text) -> Result<void> {
-    ran.push_back(text);
-    return text == "one" ? Result<void>(failure("on purpose")) : Result<void>();
+  auto player = Player::create(recording, camera, [&](const ScriptEntry& script) -> Result<void> {
+    ran.push_back(script.text);
+    return script.text == "one" ? Result<void>(failure("on purpose")) : Result<void>();
   });
   ASSERT_TRUE(player);
   EXPECT_EQ(player->startTime().tdbSeconds(), 1001.0);
@@ -238,7 +238,7 @@ TEST(Player, InterpolatesAboutTheEarlierNodeAndRunsScriptsInOrder) {
 TEST(Player, RefusesARecordingThatCannotBegin) {
   scene::Scene scene;
   navigation::Camera camera(scene);
-  const auto run = [](const std::string&) -> Result<void> { return {}; };
+  const auto run = [](const ScriptEntry&) -> Result<void> { return {}; };
   EXPECT_FALSE(Player::create({{ScriptEntry{}}}, camera, run));
   EXPECT_FALSE(Player::create({{cameraAt(0.0, {1, 2, 3}, "Nobody")}}, camera, run));
 }
@@ -262,7 +262,7 @@ TEST(Recorder, WritesWhatThePlayerPlays) {
   ASSERT_EQ(read->entries.size(), 3U);
   EXPECT_EQ(std::get<ScriptEntry>(read->entries[1]).text, "x()");
   ASSERT_TRUE(camera.setPose("Root", {}));
-  auto player = Player::create(*read, camera, [](const std::string&) -> Result<void> { return {}; });
+  auto player = Player::create(*read, camera, [](const ScriptEntry&) -> Result<void> { return {}; });
   ASSERT_TRUE(player);
   player->advance(0.25);
   EXPECT_EQ(camera.pose().position, pose.position);
@@ -361,6 +361,17 @@ TEST_F(RecordingScripts, PlaybackPausesWithTheTimeAndStops) {
   frame(0.5);
   EXPECT_NEAR(x(), 200.0, 1e-6);
   EXPECT_FALSE(is("isPlayingBack"));
+}
+
+TEST_F(RecordingScripts, KnowsWhichLineOfTheRecordingPausedIt) {
+  std::filesystem::create_directories(folder_);
+  std::ofstream(folder_ / "pausing") << header << "camera 0 1000 0 0 1e7 0 0 0 1 1 - A\n\n"
+                                     << "script 0 1000 2 x = 1\n  openspace.sessionRecording.setPlaybackPause(x == 1)\n"
+                                     << "script 1 1000 1 error('oops')\ncamera 9 1009 0 0 1e7 0 0 0 1 1 - A\n";
+  EXPECT_EQ(run("startPlayback('pausing')"), "");
+  frame(0.0);
+  EXPECT_TRUE(control_.isPlaybackPaused());
+  EXPECT_EQ(control_.pausedBy(), (folder_ / "pausing").string() + ":5");
 }
 
 TEST_F(RecordingScripts, LoopsUntilItIsStoppedEvenByItsOwnScript) {

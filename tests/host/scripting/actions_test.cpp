@@ -15,8 +15,11 @@ using testing::IsEmpty;
 class ActionsTest : public testing::Test {
  protected:
   ActionsTest() {
-    engine_.registerLibrary(actionLibrary(actions_));
-    engine_.registerLibrary(keyLibrary(keys_));
+    const NoteRegistration note = [this](std::string name, std::function<void()> takeBack) {
+      registrations_[std::move(name)] = std::move(takeBack);
+    };
+    engine_.registerLibrary(actionLibrary(actions_, note));
+    engine_.registerLibrary(keyLibrary(keys_, note));
     engine_.registerLibrary({"", {{"note", "text", "", 1, 1, [this](std::span<const Value> a) -> ScriptResult {
                                      notes_ += a[0].toLua() + ' ';
                                      return {};
@@ -30,6 +33,7 @@ class ActionsTest : public testing::Test {
   ScriptEngine engine_;
   Actions actions_{engine_};
   KeyBindings keys_{actions_};
+  std::map<std::string, std::function<void()>> registrations_;
   std::string notes_;
 };
 
@@ -71,6 +75,20 @@ TEST_F(ActionsTest, KeysAreTheSameInAnySpelling) {
   EXPECT_THAT(keys_.keysOf("a"), IsEmpty());
   EXPECT_THAT(run("openspace.bindKey('Hyper+H', 'a')"), HasSubstr("no modifier"));
   EXPECT_THAT(run("openspace.bindKey('', 'a')"), HasSubstr("is no key"));
+}
+
+TEST_F(ActionsTest, WhatIsRegisteredCanBeTakenBack) {
+  ASSERT_EQ(run("openspace.action.registerAction({ Identifier = 'a', Command = '' })"
+                "openspace.bindKey('F5', 'a') openspace.bindKey('F5', 'b')"),
+            "");
+  EXPECT_NE(run("openspace.action.registerAction({ Identifier = 'a', Command = '' })"), "");
+  ASSERT_EQ(registrations_.size(), 3U);
+  registrations_.at("key F5 a")();
+  EXPECT_THAT(keys_.actionsOf("F5"), ElementsAre("b"));
+  for (int i = 0; i < 2; ++i) {  // the second time it is gone, which does no harm
+    registrations_.at("action a")();
+    EXPECT_EQ(actions_.find("a"), nullptr);
+  }
 }
 
 TEST_F(ActionsTest, AKeyWhoseActionIsGoneDoesNoHarm) {
