@@ -61,7 +61,7 @@ void CompositeStore::updateKind(CompositeKind kind) {
   of(kind).opening.update(generations.layers());
   of(kind).fade.update(generations.layers(), frame_);
   if (inUse(kind)) {
-    composer_->setStructure(kind, generations.key());
+    composer_->programs().setStructure(kind, generations.key());
   }
 }
 
@@ -168,7 +168,7 @@ void CompositeStore::request(CompositeGathering::Request request) {
   }
   request.isMissing = request.isMissing && (!generations.isNext(key.side) || generations.pair().isMixed);
   missing_ += request.isMissing ? 1 : 0;
-  if (composer_->ready(key.kind) && !of(key.kind).opening.waits()) {
+  if (composer_->programs().program(key.kind) != 0 && !of(key.kind).opening.waits()) {
     request.generations = &generations;
     request.opacities = &of(key.kind).fade.opacities();
     request.there = find(key);
@@ -339,7 +339,7 @@ std::string CompositeStore::waitingFor() const {
         kindBetweenSteps() == kind) {
       return fmt::format("{} shows one of two times", generations.interpolated()->uri());
     }
-    if (inUse(kind) && !composer_->ownProgramReady(kind) && !composer_->ownProgramFailed(kind)) {
+    if (inUse(kind) && !composer_->programs().isOwnReady(kind) && !composer_->programs().hasOwnFailed(kind)) {
       return "a composition program is being built";
     }
   }
