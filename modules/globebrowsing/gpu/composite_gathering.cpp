@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "globebrowsing/layers/relief_tile.h"
 #include "globebrowsing/providers/raw_tile_job.h"
 #include "globebrowsing/source/tile_layout.h"
 
