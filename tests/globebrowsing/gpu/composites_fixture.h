@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -68,11 +69,11 @@ class CompositesTest : public testing::Test {
     }
     base().follow(mixes_, mayBegin_);
   }
-  /// The day, from 0, that a generation shows its first layer at; -1 for none.
+  /// The day, from 0, that a generation shows its first layer at (its first step has no begin); -1 for none.
   static double dayOf(const CompositeGenerations::Generation& generation) {
     return generation.steps.empty() || generation.steps.front() == nullptr
                ? -1.0
-               : (generation.steps.front()->when().begin - at(0.0)) / secondsADay;
+               : std::round((generation.steps.front()->when().instant - at(0.0)) / secondsADay);
   }
 
   static constexpr double secondsADay = 86400.0;
