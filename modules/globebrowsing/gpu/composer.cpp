@@ -3,41 +3,18 @@
 #include <algorithm>
 #include <cstring>
 
-#include <fmt/format.h>
 #include <glm/vec4.hpp>
 
 #include "globebrowsing/layers/layer_fields.h"
-#include "globebrowsing/layers/layer_glsl.h"
 #include "globebrowsing/source/tile_layout.h"
 
 namespace meridian::globebrowsing {
 
 namespace {
 
-constexpr GLuint layerBinding = 2;
-constexpr GLuint placementBinding = 3;
+using namespace composition_bindings;
+
 constexpr int side = colourLayout.size();
-constexpr GLenum colourFormat = GL_RGBA8;
-/// As many layers as the looping program takes; more wait for the program of their own.
-constexpr std::size_t loopLayers = 64;
-
-/// shaders/gpu/compose.frag's Placement and the head of its block.
-struct Placement {
-  glm::vec4 transform{0.0F};
-  float slot = -1.0F;
-  float pixel = 0.0F;
-  int ramp = 0;
-  int stops = 0;
-};
-static_assert(sizeof(Placement) == 32);
-
-struct PlacementHead {
-  glm::vec4 background{0.0F};
-  int count = 0;
-  int waterFrom = 0;
-  std::array<int, 2> padding{};
-};
-static_assert(sizeof(PlacementHead) == 32);
 
 /// OpenSpace starts the base from the same grey; night and overlays start from nothing.
 glm::vec4 background(CompositeKind kind) {
@@ -53,25 +30,6 @@ glm::vec4 pixelTransform(const UnitSquareTransform& transform) {
   return glm::vec4(glm::vec2(offset), glm::vec2(scale));
 }
 
-std::string unrolled(const StructureKey& key) {
-  std::string body;
-  for (std::size_t i = 0; i < key.layers().size(); ++i) {
-    const LayerStructure& layer = key.layers()[i];
-    body += fmt::format("    {0} = composePart({0}, {1}, sampling{2}, blendMode{3}, adjustment{4});\n",
-                        layer.group == LayerGroupId::WaterMasks ? "water" : "result", i, name(layer.sampling),
-                        name(layer.blendMode), name(layer.adjustment));
-  }
-  return body;
-}
-
-constexpr std::string_view loopBody =
-    "    for (int i = 0; i < part.count; ++i) {\n"
-    "        vec4 below = i < part.waterFrom ? result : water;\n"
-    "        below = composePart(below, i, layers[i].sampling, layers[i].blendMode, layers[i].adjustment);\n"
-    "        result = i < part.waterFrom ? below : result;\n"
-    "        water = i < part.waterFrom ? water : below;\n"
-    "    }\n";
-
 /// Where a layer's opacity lies among its fields.
 std::size_t opacityOffset() {
   const auto& fields = layerFields().fields();
@@ -85,47 +43,6 @@ int waterFrom(std::span<const CompositionPart> parts) {
     return part.layer->group() == LayerGroupId::WaterMasks;
   });
   return static_cast<int>(first - parts.begin());
-}
-
-/// Draws once as compose() does, into textures of its own that are not powers of two either.
-void warmComposition(GLuint program, std::size_t layers) {
-  constexpr int size = 24;
-  const graphics::Texture raw = graphics::Texture::array2D(colourFormat, size, size, 2);
-  const graphics::Texture target = graphics::Texture::array2D(colourFormat, size, size, 2, 2);
-  const graphics::Sampler sampler = graphics::Sampler::create(GL_LINEAR, GL_LINEAR);
-  const ReliefTextures::Set relief = ReliefTextures::standIn();
-  const graphics::Framebuffer framebuffer = graphics::Framebuffer::create();
-  framebuffer.attachLayer(GL_COLOR_ATTACHMENT0, target, 0);
-  const std::vector<std::byte> zeros(sizeof(PlacementHead) + layers * (sizeof(Placement) + layerFields().stride()));
-  const graphics::Buffer blocks(static_cast<GLsizeiptr>(zeros.size()), zeros.data(), 0);
-  const graphics::VertexArray vertexArray = graphics::VertexArray::create();
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
-  glViewport(0, 0, size, size);
-  glDisable(GL_DEPTH_TEST);
-  glBindTextureUnit(0, raw.id());
-  glBindSampler(0, sampler.id());
-  relief.bind(sampler);
-  glBindBufferBase(GL_UNIFORM_BUFFER, layerBinding, blocks.id());
-  glBindBufferBase(GL_UNIFORM_BUFFER, placementBinding, blocks.id());
-  glUseProgram(program);
-  glBindVertexArray(vertexArray.id());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-}
-
-void warmHalfSize(GLuint program) {
-  constexpr int size = 24;
-  const graphics::Texture target = graphics::Texture::array2D(colourFormat, size, size, 2, 2);
-  const graphics::Texture view = graphics::Texture::view(target, GL_TEXTURE_2D_ARRAY, colourFormat, 0, 1);
-  const graphics::Framebuffer framebuffer = graphics::Framebuffer::create();
-  framebuffer.attachLayer(GL_COLOR_ATTACHMENT0, target, 0, 1);
-  const graphics::VertexArray vertexArray = graphics::VertexArray::create();
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
-  glViewport(0, 0, size / 2, size / 2);
-  glDisable(GL_DEPTH_TEST);
-  glBindTextureUnit(0, view.id());
-  glUseProgram(program);
-  glBindVertexArray(vertexArray.id());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 /// Puts the frame's framebuffer, viewport and depth test back.
@@ -204,18 +121,19 @@ std::size_t Composer::bytesPerComposite() {
 }
 
 double Composer::estimatedMilliseconds(std::span<const CompositionPart> parts) const {
-  const double texelsPerMillisecond = graphics_.limits().software ? 4e5 : 1e7;
+  const double texelsPerMillisecond = isSoftware_ ? 4e5 : 1e7;
   const std::size_t fetches = isHidingAll(parts) ? 1 : parts.size() + 1;
   return static_cast<double>(fetches) * side * side / texelsPerMillisecond;
 }
 
 Result<std::unique_ptr<Composer>> Composer::create(graphics::Graphics& graphics, const Capacity& capacity) {
   std::unique_ptr<Composer> composer(new Composer(graphics, capacity));
-  return composer->requestPrograms().map([&] { return std::move(composer); });
+  return composer->programs_.request().map([&] { return std::move(composer); });
 }
 
 Composer::Composer(graphics::Graphics& graphics, const Capacity& capacity)
-    : graphics_(graphics),
+    : isSoftware_(graphics.limits().software),
+      programs_(graphics),
       composites_(
           graphics::Texture::array2D(colourFormat, side, side, static_cast<int>(capacity.composites), levelCount)),
       rawTiles_(graphics::Texture::array2D(colourFormat, side, side, static_cast<int>(capacity.rawTiles))),
@@ -230,86 +148,6 @@ Composer::Composer(graphics::Graphics& graphics, const Capacity& capacity)
     levelViews_[static_cast<std::size_t>(level)] =
         graphics::Texture::view(composites_, GL_TEXTURE_2D_ARRAY, colourFormat, level, 1);
   }
-}
-
-Result<void> Composer::requestPrograms() {
-  Result<graphics::ProgramDescription> loop = describe("compose/loop", loopLayers, std::string(loopBody));
-  Result<graphics::ShaderSource> vertex = graphics_.templates().load("gpu/fill.vert");
-  Result<graphics::ShaderSource> fragment = graphics_.templates().load("gpu/half_size.frag");
-  for (const Error* error :
-       {loop ? nullptr : &loop.error(), vertex ? nullptr : &vertex.error(), fragment ? nullptr : &fragment.error()}) {
-    if (error != nullptr) {
-      return tl::make_unexpected(*error);
-    }
-  }
-  halfSize_ = graphics_.programs().request({"compose/half size", *vertex, *fragment, warmHalfSize});
-  loop_ = graphics_.programs().request(*std::move(loop));
-  return {};
-}
-
-Result<graphics::ProgramDescription> Composer::describe(std::string key, std::size_t layers, std::string body) const {
-  const int count = std::max(1, static_cast<int>(layers));
-  const graphics::Substitutions substitutions{
-      {"structs", glslStruct(layerFields(), "Layer")},
-      {"constants", glslLayerConstants()},
-      {"layers", glslLayerBlock({"Layer", "LayerBlock", "layers", layerBinding, count})},
-      {"count", fmt::format("{}", count)},
-      {"body", std::move(body)}};
-  Result<graphics::ShaderSource> vertex = graphics_.templates().load("gpu/fill.vert");
-  if (!vertex) {
-    return tl::make_unexpected(vertex.error());
-  }
-  return graphics_.templates().load("gpu/compose.frag", substitutions).map([&](graphics::ShaderSource fragment) {
-    const auto warm = [count](GLuint program) { warmComposition(program, static_cast<std::size_t>(count)); };
-    return graphics::ProgramDescription{std::move(key), std::move(*vertex), std::move(fragment), warm};
-  });
-}
-
-void Composer::setStructure(CompositeKind kind, const StructureKey& key) {
-  Kind& own = kinds_[static_cast<std::size_t>(kind)];
-  if (own.requested && own.key == key) {
-    return;
-  }
-  own.key = key;
-  own.requested = true;
-  // The templates were read once without error, and a structure adds nothing that can be missing.
-  if (Result<graphics::ProgramDescription> description =
-          describe("compose/" + key.text(), key.layers().size(), unrolled(key))) {
-    own.program = graphics_.programs().request(*std::move(description));
-  }
-}
-
-GLuint Composer::program(CompositeKind kind) const {
-  const Kind& own = kinds_[static_cast<std::size_t>(kind)];
-  if (graphics_.programs().ready(halfSize_) == 0) {
-    return 0;
-  }
-  if (const GLuint exact = graphics_.programs().ready(own.program)) {
-    return exact;
-  }
-  return own.key.layers().size() <= loopLayers ? graphics_.programs().ready(loop_) : 0;
-}
-
-bool Composer::ownProgramReady(CompositeKind kind) const {
-  const Kind& own = kinds_[static_cast<std::size_t>(kind)];
-  return graphics_.programs().ready(halfSize_) != 0 && graphics_.programs().ready(own.program) != 0;
-}
-
-bool Composer::ownProgramFailed(CompositeKind kind) const {
-  const Kind& own = kinds_[static_cast<std::size_t>(kind)];
-  return own.program && !graphics_.programs().get(own.program);
-}
-
-std::string Composer::programError() const {
-  for (const graphics::ProgramHandle* handle :
-       {&halfSize_, &loop_, &kinds_[0].program, &kinds_[1].program, &kinds_[2].program}) {
-    if (*handle) {
-      if (const Result<GLuint> built = graphics_.programs().get(*handle); !built) {
-        return built.error().message();
-      }
-    }
-  }
-  return {};
 }
 
 void Composer::beginFrame(std::uint64_t frame) {
@@ -364,8 +202,8 @@ std::optional<Composer::Source> Composer::sourceOf(const CompositionPart& part) 
 }
 
 void Composer::bindBlocks(CompositeKind kind, std::span<const CompositionPart> parts) {
-  const bool exact = ownProgramReady(kind);
-  const std::size_t count = exact ? std::max<std::size_t>(parts.size(), 1) : loopLayers;
+  const std::size_t count =
+      programs_.isOwnReady(kind) ? std::max<std::size_t>(parts.size(), 1) : CompositionPrograms::loopLayers;
   const std::size_t stride = layerFields().stride();
   const std::size_t placementBytes = sizeof(PlacementHead) + count * sizeof(Placement);
   uniforms_.reserve(uniforms_.aligned(count * stride) + uniforms_.aligned(placementBytes));
@@ -381,8 +219,8 @@ void Composer::bindBlocks(CompositeKind kind, std::span<const CompositionPart> p
                               source.ramp, source.stops};
     std::memcpy(placements.bytes + sizeof(head) + i * sizeof(placement), &placement, sizeof(placement));
   }
-  uniforms_.bind(layerBinding, settings);
-  uniforms_.bind(placementBinding, placements);
+  uniforms_.bind(layerBlock, settings);
+  uniforms_.bind(placementBlock, placements);
 }
 
 bool Composer::compose(std::uint32_t slot, CompositeKind kind, std::span<const CompositionPart> parts) {
@@ -407,7 +245,7 @@ bool Composer::compose(std::uint32_t slot, CompositeKind kind, std::span<const C
   framebuffer_.attachLayer(GL_COLOR_ATTACHMENT0, composites_, static_cast<int>(slot));
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   glViewport(0, 0, side, side);
-  glUseProgram(program(kind));
+  glUseProgram(programs_.program(kind));
   glBindTextureUnit(0, rawTiles_.id());
   glBindSampler(0, rawSampler_.id());
   relief_.bind();
@@ -418,7 +256,7 @@ bool Composer::compose(std::uint32_t slot, CompositeKind kind, std::span<const C
 }
 
 void Composer::drawHalfSizes(std::uint32_t slot) {
-  const GLuint program = graphics_.programs().ready(halfSize_);
+  const GLuint program = programs_.halfSize();
   glUseProgram(program);
   glBindSampler(0, 0);
   glProgramUniform1i(program, 0, static_cast<GLint>(slot));

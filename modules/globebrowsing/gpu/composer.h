@@ -5,15 +5,14 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "globebrowsing/gpu/composite_kind.h"
+#include "globebrowsing/gpu/composition_programs.h"
 #include "globebrowsing/gpu/relief_textures.h"
 #include "globebrowsing/gpu/slot_pool.h"
 #include "globebrowsing/gpu/uniform_ring.h"
 #include "globebrowsing/layers/layer.h"
-#include "globebrowsing/layers/structure_key.h"
 #include "globebrowsing/providers/raw_tile.h"
 #include "globebrowsing/streaming/tile_key.h"
 #include "globebrowsing/tiling/tiling.h"
@@ -34,10 +33,8 @@ struct CompositionPart {
 
 /// Draws composites: the layers of one kind, lowest first and those of each group together, blended once per tile
 /// instead of once per fragment (after Kooima; Bladin & Broberg 2016 compose per fragment). A composite is one layer of
-/// an array texture, with three half-size levels.
-///
-/// For each structure key it generates a program, which is built in the background; until that is ready a program that
-/// loops over the layers at run time composes. Settings are uniforms and never recompile. Render thread only.
+/// an array texture, with three half-size levels. Which slot is whose, CompositeStore, its owner, knows. Render thread
+/// only.
 class Composer {
  public:
   struct Capacity {
@@ -68,20 +65,13 @@ class Composer {
   [[nodiscard]] GLuint composites() const { return composites_.id(); }
   [[nodiscard]] const Samplers& samplers() const { return samplers_; }
 
-  /// Asks for the program of that kind's structure. Cheap when nothing changed.
-  void setStructure(CompositeKind kind, const StructureKey& key);
-  /// Whether anything can be composed: the structure's own program or the looping one is ready.
-  [[nodiscard]] bool ready(CompositeKind kind) const { return program(kind) != 0; }
-  /// Whether the structure's own program is.
-  [[nodiscard]] bool ownProgramReady(CompositeKind kind) const;
-  /// Whether it cannot be built; the looping one then stays.
-  [[nodiscard]] bool ownProgramFailed(CompositeKind kind) const;
-  /// The compiler's complaint about a program that cannot be built, else empty.
-  [[nodiscard]] std::string programError() const;
+  [[nodiscard]] CompositionPrograms& programs() { return programs_; }
+  [[nodiscard]] const CompositionPrograms& programs() const { return programs_; }
 
   void beginFrame(std::uint64_t frame);
   void endFrame();
-  /// Composes into that array layer. False when the raw tiles of this frame fill their pool: try in the next frame.
+  /// Composes into that array layer, with programs().program(kind). False when the raw tiles of this frame fill their
+  /// pool: try in the next frame.
   bool compose(std::uint32_t slot, CompositeKind kind, std::span<const CompositionPart> parts);
 
   /// Bytes of the raw tiles and relief tiles that are there.
@@ -100,10 +90,6 @@ class Composer {
 
  private:
   Composer(graphics::Graphics& graphics, const Capacity& capacity);
-  Result<void> requestPrograms();
-  [[nodiscard]] Result<graphics::ProgramDescription> describe(std::string key, std::size_t layers,
-                                                              std::string body) const;
-  [[nodiscard]] GLuint program(CompositeKind kind) const;
   /// Where the shader finds what a part is made from.
   struct Source {
     float slot = -1.0F;  ///< of the raw or relief tile; below 0: there is nothing
@@ -116,13 +102,8 @@ class Composer {
   void bindBlocks(CompositeKind kind, std::span<const CompositionPart> parts);
   void drawHalfSizes(std::uint32_t slot);
 
-  struct Kind {
-    StructureKey key;
-    graphics::ProgramHandle program;
-    bool requested = false;
-  };
-
-  graphics::Graphics& graphics_;
+  bool isSoftware_;
+  CompositionPrograms programs_;
   graphics::Texture composites_;
   std::array<graphics::Texture, levelCount> levelViews_;  ///< of composites_, each of one level alone
   graphics::Texture rawTiles_;
@@ -133,9 +114,6 @@ class Composer {
   graphics::Framebuffer framebuffer_;
   graphics::VertexArray emptyVertexArray_;
   UniformRing uniforms_;
-  std::array<Kind, compositeKindCount> kinds_;
-  graphics::ProgramHandle loop_;
-  graphics::ProgramHandle halfSize_;
   std::vector<Source> sourcesOfParts_;
   std::uint64_t frame_ = 0;
 };

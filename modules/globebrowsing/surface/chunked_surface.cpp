@@ -108,8 +108,9 @@ Settled ChunkedSurface::settled(std::size_t /*view*/) const {
   if (!renderer_.programs().ready()) {
     return {false, "the program that draws chunks is being built"};
   }
-  if (const Composer& composer = tiles_->composites().composer(); !composer.ready(CompositeKind::Base)) {
-    if (std::string error = composer.programError(); !error.empty()) {
+  if (const CompositionPrograms& programs = tiles_->composites().composer().programs();
+      programs.program(CompositeKind::Base) == 0) {
+    if (std::string error = programs.error(); !error.empty()) {
       return {true, std::move(error)};
     }
   }

@@ -77,10 +77,10 @@ class ComposerTest : public GpuTest {
     return done;
   }
   void useStructure(bool wait = true) {
-    composer_->setStructure(CompositeKind::Base, manager_.group(LayerGroupId::ColorLayers).structureKey());
+    composer_->programs().setStructure(CompositeKind::Base, manager_.group(LayerGroupId::ColorLayers).structureKey());
     if (wait) {
       graphics_->programs().waitAll();
-      ASSERT_TRUE(composer_->ownProgramReady(CompositeKind::Base)) << composer_->programError();
+      ASSERT_TRUE(composer_->programs().isOwnReady(CompositeKind::Base)) << composer_->programs().error();
     }
   }
   CompositionPart part(const Layer* layer, const ColourTile* tile, UnitSquareTransform transform = {}) {
@@ -231,8 +231,8 @@ TEST_F(ComposerTest, TheLoopingProgramDrawsWhatTheUnrolledOneDoes) {
   {
     const HeldBuilder held(graphics_->programs());
     useStructure(false);
-    ASSERT_FALSE(composer_->ownProgramReady(CompositeKind::Base));
-    ASSERT_TRUE(composer_->ready(CompositeKind::Base));
+    ASSERT_FALSE(composer_->programs().isOwnReady(CompositeKind::Base));
+    ASSERT_NE(composer_->programs().program(CompositeKind::Base), 0U);
     ASSERT_TRUE(compose(0, parts));
     looped = read(0);
   }

@@ -48,9 +48,9 @@ class ReliefCompositionTest : public GpuTest {
     }
     const auto added = manager_.addLayer("Overlays", {Table{{}, std::move(fields)}, "test", "", ""});
     EXPECT_TRUE(added) << (added ? "" : added.error().message());
-    composer_->setStructure(CompositeKind::Overlay, manager_.group(LayerGroupId::Overlays).structureKey());
+    composer_->programs().setStructure(CompositeKind::Overlay, manager_.group(LayerGroupId::Overlays).structureKey());
     graphics_->programs().waitAll();
-    EXPECT_TRUE(composer_->ownProgramReady(CompositeKind::Overlay)) << composer_->programError();
+    EXPECT_TRUE(composer_->programs().isOwnReady(CompositeKind::Overlay)) << composer_->programs().error();
     CompositionPart part;
     part.layer = *added;
     part.relief = tile_.get();
@@ -202,7 +202,7 @@ TEST_F(ReliefCompositionTest, TheLoopingProgramDrawsThemToo) {
       "Overlays",
       {Table{{}, {{"Identifier", "Slope"}, {"Type", "Slope"}, {"Enabled", true}, {"Opacity", 0.0}}}, "test", "", ""});
   ASSERT_TRUE(added);
-  composer_->setStructure(CompositeKind::Overlay, manager_.group(LayerGroupId::Overlays).structureKey());
+  composer_->programs().setStructure(CompositeKind::Overlay, manager_.group(LayerGroupId::Overlays).structureKey());
   std::vector<CompositionPart> parts(2);
   for (std::size_t i = 0; i < 2; ++i) {
     parts[i].layer = manager_.group(LayerGroupId::Overlays).enabledLayers()[i];
@@ -211,7 +211,7 @@ TEST_F(ReliefCompositionTest, TheLoopingProgramDrawsThemToo) {
     parts[i].opacity = static_cast<float>(parts[i].layer->effectiveOpacity());
   }
   composer_->beginFrame(99);
-  ASSERT_TRUE(composer_->ready(CompositeKind::Overlay));
+  ASSERT_NE(composer_->programs().program(CompositeKind::Overlay), 0U);
   ASSERT_TRUE(composer_->compose(1, CompositeKind::Overlay, parts));
   composer_->endFrame();
   std::vector<std::uint8_t> looped(own.size());

@@ -1,4 +1,4 @@
-// The part of CompositeStore that mixes two composites while a layer fades.
+// The part of CompositeStore that draws two composites mixed: of two steps in time, or while a layer fades.
 
 #include <algorithm>
 
@@ -13,7 +13,18 @@ constexpr double endOfMixing = 6.0;
 
 }  // namespace
 
-void CompositeStore::updateFading() {
+std::optional<CompositeKind> CompositeStore::kindBetweenSteps() const {
+  const auto isBetween = [this](CompositeKind kind) {
+    return generations(kind).interpolated() != nullptr || generations(kind).pair().isMixed;
+  };
+  if (interpolates_ && isBetween(*fading_)) {
+    return fading_;
+  }
+  const auto found = std::find_if(allCompositeKinds.begin(), allCompositeKinds.end(), isBetween);
+  return found == allCompositeKinds.end() ? std::nullopt : std::optional(*found);
+}
+
+void CompositeStore::updateMixing() {
   const bool goesOn = fading_ && !interpolates_ && (of(*fading_).fade.moves() || drewMixed_);
   mixedLast_ = drewMixed_;
   drewMixed_ = false;
@@ -26,8 +37,8 @@ void CompositeStore::updateFading() {
                                     [this](CompositeKind kind) { return of(kind).fade.mixes(); });
     fading_ = found == allCompositeKinds.end() ? std::nullopt : std::optional(*found);
   }
-  for (KindState& state : kinds_) {
-    state.noRoomToFade = state.noRoomToFade && state.fade.moves();
+  for (Kind& kind : kinds_) {
+    kind.noRoomToFade = kind.noRoomToFade && kind.fade.moves();
   }
 }
 
@@ -35,13 +46,13 @@ std::optional<CompositeStore::Mixture> CompositeStore::mixture(const CompositeKe
   if (mixing_ != key.kind || interpolates_) {
     return std::nullopt;
   }
-  const std::optional<std::uint32_t> slot = slots_.peek(key);
+  const CompositeContents* first = find(key);
   const std::optional<std::uint32_t> other = slots_.peek({key.kind, key.index, CompositeKey::fadeSide});
-  if (!slot || !other || slotContents_[*slot].stamp != slotContents_[*other].stamp) {
+  if (first == nullptr || !other || first->stamp != slotContents_[*other].stamp) {
     return std::nullopt;
   }
   const LayerOpacities& now = of(key.kind).fade.opacities();
-  const LayerOpacities& made = slotContents_[*slot].layers;
+  const LayerOpacities& made = first->layers;
   const OpacityDifference between = difference(made, slotContents_[*other].layers);
   if (between.kind != OpacityDifference::Kind::OneOpacity) {
     return std::nullopt;
@@ -54,26 +65,25 @@ std::optional<CompositeStore::Mixture> CompositeStore::mixture(const CompositeKe
 }
 
 std::optional<LayerOpacity> CompositeStore::otherEnd(const CompositeKey& key) const {
-  const KindState& state = of(key.kind);
-  const std::optional<std::uint32_t> slot = slots_.peek(key);
-  if (mixing_ != key.kind || !state.fade.moves() || state.noRoomToFade || interpolates_ || state.hasNext || !slot ||
-      slotContents_[*slot].stamp != state.shown.stamp) {
+  const FadeWatch& fade = of(key.kind).fade;
+  const CompositeGenerations& generations = this->generations(key.kind);
+  const CompositeContents* first = find(key);
+  if (mixing_ != key.kind || !fade.moves() || of(key.kind).noRoomToFade || interpolates_ || generations.hasNext() ||
+      first == nullptr || first->stamp != generations.shown().stamp) {
     return std::nullopt;
   }
-  const OpacityDifference lack = difference(slotContents_[*slot].layers, state.fade.opacities());
-  if (lack.kind != OpacityDifference::Kind::OneOpacity || !state.fade.mixes(lack.version)) {
+  const OpacityDifference lack = difference(first->layers, fade.opacities());
+  if (lack.kind != OpacityDifference::Kind::OneOpacity || !fade.mixes(lack.version)) {
     return std::nullopt;
   }
-  return LayerOpacity{lack.version, state.fade.end(lack.version, lack.first)};
+  return LayerOpacity{lack.version, fade.end(lack.version, lack.first)};
 }
 
 void CompositeStore::endMixing(const CompositeKey& key, const Mixture& mixture, double priority) {
   if (mixture.weight >= 1.0F) {
     slots_.exchange(key, {key.kind, key.index, CompositeKey::fadeSide});
   } else if (mixture.weight > 0.0F && !of(key.kind).fade.moves()) {
-    Request plain{key, priority - endOfMixing};
-    plain.isMissing = false;
-    request(plain);
+    request({key, priority - endOfMixing, false});
   }
 }
 
@@ -89,6 +99,23 @@ CompositeStore::Placement CompositeStore::mixedPlacement(const CompositeKey& key
   } else {
     placement.otherSlot = mixed->slot;
     placement.otherWeight = mixed->weight;
+  }
+  return placement;
+}
+
+std::optional<CompositeStore::Placement> CompositeStore::pairedPlacement(const CompositeKey& other,
+                                                                         Placement placement) {
+  const std::optional<Placement> second = placeAt(other, placement.transform);
+  const double weight = generations(other.kind).pair().weight;
+  if (!second) {
+    return std::nullopt;
+  }
+  if (weight >= 1.0) {
+    return second;
+  }
+  if (weight > 0.0 && mixing_ == other.kind) {
+    placement.otherSlot = second->slot;
+    placement.otherWeight = static_cast<float>(weight);
   }
   return placement;
 }

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+#include <glm/vec4.hpp>
+
+#include "globebrowsing/gpu/composite_kind.h"
+#include "globebrowsing/layers/structure_key.h"
+#include "host/graphics/graphics.h"
+
+namespace meridian::globebrowsing {
+
+/// Where programs that compose find what they draw with: shaders/gpu/compose.frag.
+namespace composition_bindings {
+inline constexpr GLuint layerBlock = 2;      ///< layerFields() of each part
+inline constexpr GLuint placementBlock = 3;  ///< PlacementHead, then a Placement of each part
+inline constexpr GLenum colourFormat = GL_RGBA8;
+
+struct Placement {
+  glm::vec4 transform{0.0F};
+  float slot = -1.0F;
+  float pixel = 0.0F;
+  int ramp = 0;
+  int stops = 0;
+};
+static_assert(sizeof(Placement) == 32);
+
+struct PlacementHead {
+  glm::vec4 background{0.0F};
+  int count = 0;
+  int waterFrom = 0;
+  std::array<int, 2> padding{};
+};
+static_assert(sizeof(PlacementHead) == 32);
+}  // namespace composition_bindings
+
+/// The programs that compose. For each structure key one is generated and built in the background; until it is ready
+/// one that loops over the layers at run time composes. Settings are uniforms and never recompile. Owned by Composer.
+/// Render thread only.
+class CompositionPrograms {
+ public:
+  /// As many layers as the looping program takes; more wait for the program of their own.
+  static constexpr std::size_t loopLayers = 64;
+
+  explicit CompositionPrograms(graphics::Graphics& graphics) : graphics_(graphics) {}
+
+  /// Once, before all else: asks for those that do not depend on layers. Errors: shader templates missing or wrong.
+  Result<void> request();
+  /// Asks for the program of that kind's structure. Cheap when nothing changed.
+  void setStructure(CompositeKind kind, const StructureKey& key);
+
+  /// The structure's own, or the looping one; 0 while none is ready.
+  [[nodiscard]] GLuint program(CompositeKind kind) const;
+  /// Draws a half-size level; 0 while it is not ready, and then so are all others.
+  [[nodiscard]] GLuint halfSize() const { return graphics_.programs().ready(halfSize_); }
+  /// Whether the structure's own program is ready.
+  [[nodiscard]] bool isOwnReady(CompositeKind kind) const;
+  /// Whether it cannot be built; the looping one then stays.
+  [[nodiscard]] bool hasOwnFailed(CompositeKind kind) const;
+  /// The compiler's complaint about a program that cannot be built, else empty.
+  [[nodiscard]] std::string error() const;
+
+ private:
+  struct Kind {
+    StructureKey key;
+    graphics::ProgramHandle program;
+    bool requested = false;
+  };
+
+  [[nodiscard]] Result<graphics::ProgramDescription> describe(std::string key, std::size_t layers,
+                                                              std::string body) const;
+
+  graphics::Graphics& graphics_;
+  std::array<Kind, compositeKindCount> kinds_;
+  graphics::ProgramHandle loop_;
+  graphics::ProgramHandle halfSize_;
+};
+
+}  // namespace meridian::globebrowsing
