@@ -12,9 +12,6 @@ namespace meridian {
 
 namespace {
 
-/// Weeks and days are counted up to there; std::chrono's years end at 32767.
-constexpr int furthestYear = 20'000;
-
 /// Takes the text from its front, part by part; each step is false where that cannot be.
 class CalendarReader {
  public:
@@ -99,7 +96,7 @@ class CalendarReader {
         return false;
       }
     }
-    if (week < 1 || ofWeek < 1 || ofWeek > 7 || std::abs(found_.year) > furthestYear) {
+    if (week < 1 || ofWeek < 1 || ofWeek > 7 || std::abs(found_.year) > furthestCalendarYear) {
       return false;
     }
     using namespace std::chrono;
@@ -113,7 +110,7 @@ class CalendarReader {
     found_.style.form = CalendarForm::DayOfYear;
     found_.style.parts = 3;
     int ofYear = 0;
-    if (!readNumber(ofYear, 3) || ofYear < 1 || std::abs(found_.year) > furthestYear) {
+    if (!readNumber(ofYear, 3) || ofYear < 1 || std::abs(found_.year) > furthestCalendarYear) {
       return false;
     }
     const int year = found_.year;
@@ -213,6 +210,9 @@ class CalendarReader {
     }
     take(":");
     if (!rest_.empty() && !readNumber(minutes, 2)) {
+      return false;
+    }
+    if (hours > 23 || minutes > 59) {
       return false;
     }
     found_.zoneMinutes = (hours * 60 + minutes) * (isEast ? 1 : -1);

@@ -21,6 +21,9 @@ struct CalendarStyle {
   CalendarForm form = CalendarForm::MonthAndDay;
 };
 
+/// Weeks, and days of the year, are counted up to there on either side of 0; std::chrono's years end at 32767.
+constexpr int furthestCalendarYear = 20'000;
+
 /// An instant as its numbers stand in a text, by month and day whatever its form; parts that are left out are the first
 /// of their kind. But for weeks and days of the year only the form was looked at: whether the calendar has such an
 /// instant, leap seconds among them, is for those to say who count it.

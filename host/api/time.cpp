@@ -46,6 +46,25 @@ Time timeFromUtc(const Time::JulianDate& utc) {
   return Time((tt.day - j2000) * secondsPerDay + tt.fraction * secondsPerDay + tdbMinusTt(tt));
 }
 
+/// By the calendar, not by seconds: a leap second is the last of a day of UTC, wherever that ends. What the calendar
+/// does not have stays as it is.
+void moveToUtc(CalendarText& calendar) {
+  using namespace std::chrono;
+  const year_month_day local = year(calendar.year) / calendar.month / calendar.day;
+  if (!local.ok() || calendar.hour > 23 || calendar.minute > 59) {
+    return;
+  }
+  const auto moved = sys_days(local) + hours(calendar.hour) + minutes(calendar.minute - calendar.zoneMinutes);
+  const auto midnight = floor<days>(moved);
+  const year_month_day date(midnight);
+  const hh_mm_ss clock(moved - midnight);
+  calendar.year = static_cast<int>(date.year());
+  calendar.month = static_cast<int>(static_cast<unsigned>(date.month()));
+  calendar.day = static_cast<int>(static_cast<unsigned>(date.day()));
+  calendar.hour = static_cast<int>(clock.hours().count());
+  calendar.minute = static_cast<int>(clock.minutes().count());
+}
+
 }  // namespace
 
 Result<Time> Time::fromUtc(std::string_view text) {
@@ -53,13 +72,17 @@ Result<Time> Time::fromUtc(std::string_view text) {
     return failure(fmt::format("\"{}\" is not a UTC time: {}", text.substr(0, 64), why), {},
                    "write it as 2026-11-22T21:17:05");
   };
-  const std::optional<CalendarText> calendar = readCalendarText(text);
+  std::optional<CalendarText> calendar = readCalendarText(text);
   constexpr int hourAlone = 4;
-  if (!calendar || calendar->style.isBasic || calendar->style.parts < 3 || calendar->style.parts == hourAlone) {
+  if (!calendar || calendar->style.isBasic || calendar->style.parts < 3 || calendar->style.parts == hourAlone ||
+      (calendar->style.parts == 3 && calendar->zoneMinutes != 0)) {
     return bad("it is not of the form YYYY-MM-DDThh:mm:ss");
   }
   if (calendar->year < -4000 || calendar->year > 9999) {
     return bad("the year is outside -4000..9999");
+  }
+  if (calendar->zoneMinutes != 0) {
+    moveToUtc(*calendar);
   }
   JulianDate utc{};
   const int status =
@@ -68,7 +91,7 @@ Result<Time> Time::fromUtc(std::string_view text) {
   if (status < 0 || status == 2 || status == 3) {
     return bad("the calendar has no such date or time of day");
   }
-  return timeFromUtc(utc) + -60.0 * calendar->zoneMinutes;
+  return timeFromUtc(utc);
 }
 
 Time Time::now() {

@@ -7,8 +7,7 @@
 
 namespace meridian::globebrowsing {
 
-/// Reads a date as assets write them: what Time::fromUtc reads, and "2004", "2004-03", "2004-061" (a day of the year,
-/// also with a time of day after a T).
+/// Reads a date as assets write them: what Time::fromUtc reads, and "2004", "2004-03".
 [[nodiscard]] Result<Time::UtcInstant> readDate(std::string_view text);
 
 }  // namespace meridian::globebrowsing

@@ -46,11 +46,9 @@ std::int64_t daysOfMonth(std::int64_t year, std::int64_t month) {
   return static_cast<unsigned>(last.day());
 }
 
-constexpr std::int64_t furthestYear = 20'000;
-
 bool isOfCalendar(const CalendarText& parts) {
   const bool isMidnight = parts.hour == 24 && parts.minute == 0 && parts.second == 0;
-  return std::abs(parts.year) <= furthestYear && parts.month >= 1 && parts.month <= 12 && parts.day >= 1 &&
+  return std::abs(parts.year) <= furthestCalendarYear && parts.month >= 1 && parts.month <= 12 && parts.day >= 1 &&
          parts.day <= daysOfMonth(parts.year, parts.month) && (parts.hour <= 23 || isMidnight) && parts.minute <= 59 &&
          parts.second <= 60;
 }
