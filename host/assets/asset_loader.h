@@ -50,7 +50,7 @@ class AssetLoader {
   /// in asset.require. Adding it again does nothing. The error is that of the root; reports() has all of them.
   Result<void> add(std::string_view path);
   /// Runs onDeinitialize of a root asset and of what only it required, parents first; forgets them. Of one that failed
-  /// what it had registered is taken back instead: nodes, actions, keys, layers.
+  /// what it had registered is taken back instead: nodes, actions, keys, layers, GeoJSON.
   Result<void> remove(std::string_view path);
   void removeAll();
 

@@ -253,7 +253,11 @@ ScriptLibrary keyLibrary(KeyBindings& keys, NoteRegistration note) {
           if (!key || !action) {
             return tl::make_unexpected(!key ? key.error() : action.error());
           }
+          const std::vector<std::string> before = keys.actionsOf(*key);
           return none(keys.bind(*key, *action).map([&] {
+            if (std::find(before.begin(), before.end(), *action) != before.end()) {
+              return;  // it is another's, who may stay when this one goes
+            }
             note("key " + *key + ' ' + *action, [&keys, bound = *key, called = *action] {
               static_cast<void>(keys.unbind(bound, called));  // the key is one, or it had not been bound
             });

@@ -91,6 +91,13 @@ TEST_F(ActionsTest, WhatIsRegisteredCanBeTakenBack) {
   }
 }
 
+TEST_F(ActionsTest, AKeyThatIsBoundAlreadyStaysItsFirstOnes) {
+  ASSERT_EQ(run("openspace.bindKey('Ctrl+F5', 'a')"), "");
+  registrations_.clear();
+  ASSERT_EQ(run("openspace.bindKey('ctrl+f5', 'a')"), "");
+  EXPECT_THAT(registrations_, IsEmpty());
+}
+
 TEST_F(ActionsTest, AKeyWhoseActionIsGoneDoesNoHarm) {
   ASSERT_EQ(run("openspace.bindKey('x', 'gone')"), "");
   EXPECT_TRUE(keys_.press("x"));
