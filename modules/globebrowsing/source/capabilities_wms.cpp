@@ -116,6 +116,10 @@ class WmsReader {
       layer.title = layer.identifier;
     }
     readPlaces(node, layer);
+    const std::optional<Extent> fromDegrees = layer.extent;
+    if (!layer.extent) {
+      layer.extent = extentOfBoxes(layer.boundingBoxes);
+    }
     readDimensions(node, layer);
     readRest(node, layer);
     layer.obstacle.clear();
@@ -127,6 +131,7 @@ class WmsReader {
       layer.obstacle = "none of its formats is an image that can be read here";
     }
     result_.layers.push_back(layer);
+    layer.extent = fromDegrees;  // children have boxes of their own
     layer.path.push_back(layer.title);
     for (const pugi::xml_node& inner : children(node, "Layer")) {
       readLayer(inner, layer);
@@ -156,20 +161,33 @@ class WmsReader {
         result_.problems.push_back(document_.placeOf(geographic) + ": the extent of '" + layer.title + "' is no place");
       }
     }
+    std::vector<std::pair<std::string, Extent>> boxes;  // its own before those that it inherits
+    const auto isSameCrs = [](const auto& a, const auto& b) { return a.first == b.first; };
     for (const pugi::xml_node& entry : children(node, "BoundingBox")) {
       const std::string crs = attribute(entry, isThree_ ? "CRS" : "SRS");
       const std::string other = attribute(entry, isThree_ ? "SRS" : "CRS");
       if (const std::optional<Extent> box = readBox(entry); box && !(crs + other).empty()) {
-        putOrReplace(layer.boundingBoxes, std::pair{crs.empty() ? other : crs, *box},
-                     [](const auto& a, const auto& b) { return a.first == b.first; });
+        putOrReplace(boxes, std::pair{crs.empty() ? other : crs, *box}, isSameCrs);
       }
     }
-    // Where no degrees are given or inherited, by the first box that has some.
-    for (auto box = layer.boundingBoxes.begin(); box != layer.boundingBoxes.end() && !layer.extent; ++box) {
-      if (const auto crs = MapCrs::of(box->first, document_.where())) {
-        layer.extent = extentOfBox(*crs, isThree_ && crs->isNorthingFirst() ? axesExchanged(box->second) : box->second);
+    for (std::pair<std::string, Extent>& inherited : layer.boundingBoxes) {
+      if (std::none_of(boxes.begin(), boxes.end(), [&](const auto& own) { return isSameCrs(own, inherited); })) {
+        boxes.push_back(std::move(inherited));
       }
     }
+    layer.boundingBoxes = std::move(boxes);
+  }
+
+  /// By the first box that gives some.
+  [[nodiscard]] std::optional<Extent> extentOfBoxes(const std::vector<std::pair<std::string, Extent>>& boxes) const {
+    for (const auto& [name, box] : boxes) {
+      if (const auto crs = MapCrs::of(name, document_.where())) {
+        if (const auto extent = extentOfBox(*crs, isThree_ && crs->isNorthingFirst() ? axesExchanged(box) : box)) {
+          return extent;
+        }
+      }
+    }
+    return std::nullopt;
   }
 
   static void readDimensions(const pugi::xml_node& node, CapabilitiesLayer& layer) {

@@ -1,6 +1,7 @@
 // What servers write against the letter of the standards, and how much of it.
 
 #include <chrono>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -201,13 +202,18 @@ TEST(OddWms, BoxesAreFoundByAnyNameOfTheirCrs) {
 TEST(OddWms, BoxesPlaceLayersWithoutDegrees) {
   const auto capabilities = parse(
       "<WMS_Capabilities version=\"1.3.0\"><Capability><Layer><Name>a</Name><CRS>EPSG:4326</CRS><BoundingBox "
-      "CRS=\"EPSG:4326\" minx=\"40\" miny=\"-10\" maxx=\"50\" maxy=\"20\"/><Layer><Name>b</Name></Layer></Layer>"
+      "CRS=\"EPSG:4326\" minx=\"40\" miny=\"-10\" maxx=\"50\" "
+      "maxy=\"20\"/><Layer><Name>b</Name></Layer><Layer><Name>c</Name>"
+      "<BoundingBox CRS=\"CRS:84\" minx=\"5\" miny=\"45\" maxx=\"6\" maxy=\"46\"/></Layer></Layer>"
       "</Capability></WMS_Capabilities>");
   const TileService service = serviceOfOnly(capabilities);
   EXPECT_NEAR(service.west, -10, 1e-9);
   EXPECT_NEAR(service.north, 50, 1e-9);
   ASSERT_TRUE(capabilities->find("b")->extent);
   EXPECT_EQ(capabilities->find("b")->extent->west, capabilities->layers.front().extent->west);
+  ASSERT_TRUE(capabilities->find("c")->extent);
+  EXPECT_NEAR(180.0 / std::numbers::pi * capabilities->find("c")->extent->west, 5, 1e-9)
+      << "its own box, not the one it inherits";
 }
 
 // GeoServer lists every CRS that it knows for every layer. Each name is looked at once, whatever their number: what
