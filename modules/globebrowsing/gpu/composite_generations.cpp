@@ -205,8 +205,8 @@ void CompositeGenerations::weighPair(bool isBetween) {
     const double other = interpolated()->otherWeight();
     pair_.weight = isFromPresent ? other : 1.0 - other;
   } else {
-    pair_.weight =
-        1.0;  // what was mixed is the time of before; it is exchanged as soon as the next one covers the view
+    // What was mixed is the time of before; it is exchanged as soon as the next one covers the view.
+    pair_.weight = 1.0;
   }
   if (pair_.isHeld && !pair_.isPair) {
     pair_.isPair = true;

@@ -99,8 +99,8 @@ void HeightComposition::takeLayers() {
   std::vector<Shown> shown;
   for (const Layer* layer : enabled()) {
     const auto known =
-        std::find_if(shown_.begin(), shown_.end(), [&](const Shown& each) { return each.layer == layer; });
-    shown.push_back(known == shown_.end() ? Shown{layer, nullptr, nullptr} : std::move(*known));
+        std::find_if(shown_.begin(), shown_.end(), [&](const Shown& each) { return each.uri == layer->uri(); });
+    shown.push_back(known == shown_.end() ? Shown{layer->uri(), nullptr, nullptr} : std::move(*known));
   }
   shown_ = std::move(shown);
   gathered_.resize(enabled().size());

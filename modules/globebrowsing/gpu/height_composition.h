@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -50,9 +51,9 @@ class HeightComposition {
 
   /// What a layer showed, to stand in for what is late of what it shows now.
   struct Shown {
-    const Layer* layer = nullptr;  ///< only to be compared
-    LayerStepPointer step;         ///< that gave heights last
-    LayerStepPointer former;       ///< and the one before it, until all that was asked of `step` has come
+    std::string uri;          ///< of the layer: where one was that is gone another may lie
+    LayerStepPointer step;    ///< that gave heights last
+    LayerStepPointer former;  ///< and the one before it, until all that was asked of `step` has come
   };
 
   [[nodiscard]] const std::vector<Layer*>& enabled() const {
