@@ -1,3 +1,7 @@
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
 #include "globe_fixture.h"
 #include "globebrowsing/surface/chunked_surface.h"
 
@@ -9,6 +13,14 @@ class LayerLoadingTest : public GlobeTest {
  protected:
   static std::ptrdiff_t entries(const char* folder) {
     return std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
+  }
+  /// Once the driver, whose own threads write its cache now and then, has closed what it had open.
+  static bool comesDownTo(const char* folder, std::ptrdiff_t count) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+    while (entries(folder) > count && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return entries(folder) <= count;
   }
 };
 
@@ -26,8 +38,8 @@ TEST_F(LayerLoadingTest, DisabledLayersTakeNoThreadFileOrRequest) {
         globe.layers().addLayer("ColorLayers", {fileLayer(name, path, {{"Enabled", false}}), "test", "Layer", ""}));
   }
   ASSERT_TRUE(settle());
-  EXPECT_EQ(entries("/proc/self/task"), threads);
-  EXPECT_EQ(entries("/proc/self/fd"), files);
+  EXPECT_TRUE(comesDownTo("/proc/self/task", threads));
+  EXPECT_TRUE(comesDownTo("/proc/self/fd", files));
   EXPECT_EQ(statistics_.tiles.requested, requested);
   EXPECT_EQ(globe.layers().layerCount(), 501U);
 }
