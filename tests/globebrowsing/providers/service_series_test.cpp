@@ -11,6 +11,7 @@
 
 #include "globebrowsing/source/service_text.h"
 #include "provider_fixture.h"
+#include "support/shared_data.h"
 
 namespace meridian::globebrowsing {
 namespace {
@@ -235,13 +236,13 @@ class Allowed {
 };
 
 TEST(SharedCapabilities, EveryTimeThatIsAskedForIsAllowed) {
-  const char* data = std::getenv("MERIDIAN_SHARED_DATA");
-  if (data == nullptr) {
-    GTEST_SKIP() << "MERIDIAN_SHARED_DATA is not set: real capabilities are not tested";
+  const std::string data = ::meridian::test::sharedData("capabilities");
+  if (!std::filesystem::exists(data)) {
+    GTEST_SKIP() << "NOT TESTED: there is no " << data;
   }
   int layers = 0;
   std::set<std::string> documents;
-  for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(data) / "capabilities")) {
+  for (const auto& file : std::filesystem::directory_iterator(data)) {
     const std::string path = file.path().string();
     const auto document = std::make_shared<CapabilitiesDocument>(path, nullptr);
     const auto capabilities = document->capabilities();

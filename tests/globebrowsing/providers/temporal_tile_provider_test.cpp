@@ -9,6 +9,7 @@
 #include "globebrowsing/providers/inner_providers.h"
 #include "host/api/property_owner.h"
 #include "provider_fixture.h"
+#include "support/shared_data.h"
 
 namespace meridian::globebrowsing {
 namespace {
@@ -322,9 +323,7 @@ TEST_F(TemporalTileProviderTest, SaysWhatIsWrongWithItsData) {
 }
 
 TEST_F(TemporalTileProviderTest, ShowsTheMonthsOfBlueMarble) {
-  const char* shared = std::getenv("MERIDIAN_SHARED_DATA");
-  const std::filesystem::path data = shared != nullptr ? shared : MERIDIAN_SOURCE_FOLDER "/../shared/data";
-  const std::string months = (data / "imagery/earth/temporal_bmng").string();
+  const std::string months = ::meridian::test::sharedData("imagery/earth/temporal_bmng");
   if (!std::filesystem::exists(months)) {
     GTEST_SKIP() << "NOT TESTED: there is no " << months;
   }

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -16,6 +15,7 @@
 
 #include "globebrowsing/source/raster_source.h"
 #include "globebrowsing/tiling/geodetic_tiling.h"
+#include "support/shared_data.h"
 
 namespace meridian::globebrowsing::test {
 
@@ -184,13 +184,7 @@ inline std::size_t at(const TileLayout& layout, int column, int row) {
          static_cast<std::size_t>(column + layout.border);
 }
 
-inline std::string sharedData(const std::string& file) {
-  const char* folder = std::getenv("MERIDIAN_SHARED_DATA");
-  const std::filesystem::path root =
-      folder != nullptr ? std::filesystem::path(folder)
-                        : std::filesystem::path(MERIDIAN_SOURCE_FOLDER).parent_path() / "shared" / "data";
-  return (root / file).string();
-}
+using ::meridian::test::sharedData;
 
 inline const std::string etopo5 = "/usr/share/ferret-vis/data/etopo5.cdf";
 inline const std::string blueMarble = "/usr/share/marble/data/maps/earth/bluemarble/bluemarble.jpg";

@@ -1,18 +1,18 @@
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "support/shared_data.h"
+
 namespace meridian::test {
 
 /// The answers of CSPICE that the shared data holds: one JSON object a line, with no nesting but number lists.
 inline std::filesystem::path goldenFolder() {
-  const char* shared = std::getenv("MERIDIAN_SHARED_DATA");
-  return std::filesystem::path(shared != nullptr ? shared : MERIDIAN_SOURCE_FOLDER "/../shared/data") / "spice/golden";
+  return sharedData("spice/golden");
 }
 
 inline std::vector<std::string> goldenLines(const std::string& file) {

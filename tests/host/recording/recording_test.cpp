@@ -1,5 +1,4 @@
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -15,6 +14,7 @@
 #include "host/recording/session_recording.h"
 #include "smooth_ground.h"
 #include "support/allocation_count.h"
+#include "support/shared_data.h"
 
 namespace meridian::recording {
 
@@ -26,8 +26,7 @@ using testing::HasSubstr;
 const std::string header(asciiHeader());
 
 std::filesystem::path samples() {
-  const char* shared = std::getenv("MERIDIAN_SHARED_DATA");
-  return std::filesystem::path(shared != nullptr ? shared : MERIDIAN_SOURCE_FOLDER "/../shared/data") / "recordings";
+  return test::sharedData("recordings");
 }
 
 std::string refusal(const std::string& content) {
