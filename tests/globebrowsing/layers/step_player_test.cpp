@@ -68,9 +68,11 @@ class StepPlayerTest : public testing::Test {
  protected:
   StepPlayerTest() { EXPECT_TRUE(series_.open()); }
 
-  /// One frame, and all that it set going.
+  /// One frame, and afterwards all that it set going.
   void frame(double seconds) {
+    Gate gate(workers_);
     player_.update(series_, Time(seconds));
+    gate.open();
     workers_.drain();
   }
   [[nodiscard]] double shown() const { return player_.current() ? player_.current()->when().begin.tdbSeconds() : -1.0; }
@@ -227,8 +229,10 @@ TEST_F(StepPlayerTest, OpensTheStepBeyondTheMomentToMixWith) {
   frame(125.0);
   EXPECT_EQ(player_.other(), nullptr);
   series_.mixes = true;
+  Gate gate(workers_);
   player_.update(series_, Time(125.0));
   EXPECT_TRUE(player_.awaits());
+  gate.open();
   workers_.drain();
   for (const double time : {100.0, 125.0, 199.0, 160.0}) {
     frame(time);

@@ -60,6 +60,7 @@ TEST_F(HttpFetcherCache, KeepsOnlyWhatWasAccepted) {
 
   fetcher.reject(request);
   EXPECT_EQ(ask(fetcher, request)->body, nullptr);
+  fetcher.drainCache();
   HttpFetcher next(options);
   EXPECT_FALSE(ask(next, request)->isFromCache) << "what was rejected is gone from disk";
 }
