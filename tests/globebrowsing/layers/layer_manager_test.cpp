@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "../streaming/streamer_fixture.h"
 #include "globebrowsing/streaming/tile_streamer.h"
 #include "layer_fixture.h"
 
@@ -191,7 +192,9 @@ TEST(LayerWithServices, OpensItsProviderWhenFirstEnabledAndTellsWhatWentWrong) {
   pool.drain();
   EXPECT_EQ(layer.provider()->state(), TileProvider::State::NotOpened);
   layer.enabled.put(true);
+  Gate gate(pool);  // that it fails is to be noticed by the second update
   manager.update();
+  gate.open();
   pool.drain();
   const std::uint64_t before = manager.settingsVersion(LayerGroupId::HeightLayers);
   manager.update();
