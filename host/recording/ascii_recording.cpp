@@ -179,7 +179,7 @@ class AsciiReader {
       return;
     }
     entry.text = words.rest();
-    for (double read = 1.0; read < count; read += 1.0) {
+    for (std::size_t read = 1; static_cast<double>(read) < count; ++read) {
       const auto line = lines_.next();
       if (!line) {
         words.expect(fmt::format("a script of {} lines", count), fmt::format("the end of the file after {}", read));

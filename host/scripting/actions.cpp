@@ -113,13 +113,13 @@ Result<std::string> spelled(std::string_view key) {
 
 }  // namespace
 
-Result<void> Actions::add(Action action) {
+Result<void> Actions::add(const Action& action) {
   if (action.identifier.empty()) {
     return failure("the action has no identifier");
   }
-  std::string identifier = action.identifier;
-  if (!actions_.try_emplace(identifier, std::move(action)).second) {
-    return failure(fmt::format("there is an action \"{}\" already", identifier), {}, "choose another identifier");
+  if (!actions_.try_emplace(action.identifier, action).second) {
+    return failure(fmt::format("there is an action \"{}\" already", action.identifier), {},
+                   "choose another identifier");
   }
   return {};
 }

@@ -29,7 +29,7 @@ class Actions {
   explicit Actions(ScriptEngine& engine) : engine_(&engine) {}
 
   /// Errors: no identifier; one that is taken.
-  Result<void> add(Action action);
+  Result<void> add(const Action& action);
   /// Errors: no such action.
   Result<void> remove(std::string_view identifier);
   [[nodiscard]] const Action* find(std::string_view identifier) const;
@@ -67,7 +67,8 @@ class KeyBindings {
 /// `openspace.action.*`: registerAction, removeAction, hasAction, action, actions, triggerAction. A second action of
 /// the same name is an error, as is triggering what is not there. `note` hears of each that is registered.
 [[nodiscard]] ScriptLibrary actionLibrary(Actions& actions, NoteRegistration note);
-/// `openspace.*`: bindKey, clearKey, clearKeys, keyBindings, keyBindingsForAction. `note` hears of each that is bound.
+/// `openspace.*`: bindKey, clearKey, clearKeys, keyBindings, keyBindingsForAction. `note` hears of each that
+/// was not bound before.
 [[nodiscard]] ScriptLibrary keyLibrary(KeyBindings& keys, NoteRegistration note);
 
 }  // namespace meridian::scripting
