@@ -296,7 +296,7 @@ Result<Layer*> RenderableGlobe::addLayer(const std::string& group, const Provide
     log::info("{}: {} has a layer {} already; the other one is left out", request.where, group, *identifier->string());
     return nullptr;
   }
-  const Result<Layer*> added = layers_.addLayer(group, request);
+  Result<Layer*> added = layers_.addLayer(group, request);
   if (added && isUsers) {
     (*added)->setUsers();
   }

@@ -18,7 +18,7 @@ constexpr CalendarMilliseconds minute = 60 * second;
 constexpr CalendarMilliseconds hour = 60 * minute;
 constexpr CalendarMilliseconds day = 24 * hour;
 // Far beyond any service, and far from where sums overflow.
-constexpr CalendarMilliseconds longest = 20'000 * 366 * day;
+constexpr CalendarMilliseconds longest = day * 366 * 20'000;
 
 CalendarMilliseconds fromDate(std::int64_t year, std::int64_t month, std::int64_t dayOfMonth) {
   using namespace std::chrono;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "globebrowsing/source/calendar.h"
@@ -226,7 +227,7 @@ Result<Capabilities> readList(const Json& document, Capabilities result) {
     const std::string type = stringAt(service, "type");
     if (type == "MapServer" || type == "ImageServer") {
       const std::string name = stringAt(service, "name");
-      add(name, services + "/" + percentEncoded(name, "/") + "/" + type);
+      add(name, fmt::format("{}/{}/{}", services, percentEncoded(name, "/"), type));
     }
   }
   if (result.layers.empty()) {

@@ -22,9 +22,10 @@ constexpr int framesUntilTold = 120;
 Result<std::unique_ptr<ChunkedSurface>> ChunkedSurface::create(Parts parts, const GlobeTiles::Options& options) {
   Result<std::unique_ptr<GlobeTiles>> tiles =
       GlobeTiles::create(*parts.graphics, parts.tiling, *parts.layers, *parts.streamer, options);
-  return std::move(tiles).map([&](std::unique_ptr<GlobeTiles> made) {
-    return std::unique_ptr<ChunkedSurface>(new ChunkedSurface(std::move(parts), std::move(made)));
-  });
+  if (!tiles) {
+    return tl::make_unexpected(std::move(tiles.error()));
+  }
+  return std::unique_ptr<ChunkedSurface>(new ChunkedSurface(std::move(parts), std::move(*tiles)));
 }
 
 ChunkedSurface::ChunkedSurface(Parts parts, std::unique_ptr<GlobeTiles> tiles)
