@@ -39,8 +39,7 @@ FloorDraw::FloorDraw(SettledGlobe& globe, glm::ivec2 size, const SurfaceFigures&
       size_(size),
       vertexArray_(graphics::VertexArray::create()),
       night_(figures.mostlyNight),
-      sampling_(quantile(figures.texelDensities, 0.5) <= 1.0 ? Composer::Sampling::Magnified
-                                                             : Composer::Sampling::Plain) {
+      sampling_(figures.sampling) {
   makeGrid(figures);
   makeBlocks(figures);
 }

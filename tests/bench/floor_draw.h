@@ -29,7 +29,7 @@ class FloorDraw {
   graphics::Buffer chunkBlock_;
   int elementCount_ = 0;
   bool night_ = false;
-  globebrowsing::Composer::Sampling sampling_ = globebrowsing::Composer::Sampling::Plain;
+  globebrowsing::Composer::Sampling sampling_;
 };
 
 }  // namespace meridian::bench

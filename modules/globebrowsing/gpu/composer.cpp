@@ -96,16 +96,22 @@ Composer::Samplers Composer::makeSamplers() {
   return made;
 }
 
-const graphics::Sampler& Composer::Samplers::of(Sampling sampling) const {
-  switch (sampling) {
-    case Sampling::Magnified:
-      return magnified;
-    case Sampling::Polar:
+const graphics::Sampler& Composer::Samplers::of(Sampling::Kind kind) const {
+  switch (kind) {
+    case Sampling::Kind::OneLevel:
+      return oneLevel;
+    case Sampling::Kind::Polar:
       return polar;
-    case Sampling::Plain:
+    case Sampling::Kind::Plain:
       break;
   }
   return plain;
+}
+
+void Composer::bindComposites(GLuint unit, Sampling sampling) const {
+  const bool all = sampling.kind != Sampling::Kind::OneLevel;
+  glBindTextureUnit(unit, all ? composites_.id() : levelViews_[sampling.level].id());
+  glBindSampler(unit, samplers_.of(sampling.kind).id());
 }
 
 std::size_t Composer::bytesPerRawTile() {

@@ -49,21 +49,28 @@ class Composer {
   [[nodiscard]] static Result<std::unique_ptr<Composer>> create(graphics::Graphics& graphics, const Capacity& capacity);
 
   /// How composites are sampled when chunks are drawn.
-  enum class Sampling : std::uint8_t { Plain, Magnified, Polar };
+  struct Sampling {
+    enum class Kind : std::uint8_t { Plain, OneLevel, Polar };
+    Kind kind = Kind::Plain;
+    std::uint8_t level = 0;  ///< of OneLevel: 0 (full size) to levelCount - 1
+    auto operator<=>(const Sampling&) const = default;
+  };
   struct Samplers {
     graphics::Sampler plain;
-    /// Without levels, for tiles none of whose texels is smaller than a pixel: on a software renderer a third cheaper.
-    graphics::Sampler magnified;
+    /// For tiles whose pixels are all well served by the same half-size level: on a software renderer a third cheaper
+    /// than choosing two for each pixel and blending them.
+    graphics::Sampler oneLevel;
     /// For tiles that taper to a pole. There a pixel spans many texels along u that are all but one point; going by
     /// those would blur along v as well, so at most the second half-size level is used.
     graphics::Sampler polar;
-    [[nodiscard]] const graphics::Sampler& of(Sampling sampling) const;
+    [[nodiscard]] const graphics::Sampler& of(Sampling::Kind kind) const;
   };
   [[nodiscard]] static Samplers makeSamplers();
 
-  /// The array texture of composites; bind it with one of samplers().
+  /// The array texture of composites, all levels.
   [[nodiscard]] GLuint composites() const { return composites_.id(); }
-  [[nodiscard]] const Samplers& samplers() const { return samplers_; }
+  /// Binds the array texture of composites, or one level of it, with its sampler.
+  void bindComposites(GLuint unit, Sampling sampling) const;
 
   [[nodiscard]] CompositionPrograms& programs() { return programs_; }
   [[nodiscard]] const CompositionPrograms& programs() const { return programs_; }

@@ -63,7 +63,7 @@ void warmChunks(GLuint program, bool blended) {
   glBindBufferBase(GL_UNIFORM_BUFFER, chunk_bindings::chunkBlock, chunkBlock.id());
   glUseProgram(program);
   glBindVertexArray(vertexArray.id());
-  for (const graphics::Sampler* sampler : {&samplers.plain, &samplers.magnified, &samplers.polar}) {
+  for (const graphics::Sampler* sampler : {&samplers.plain, &samplers.oneLevel, &samplers.polar}) {
     glBindSampler(chunk_bindings::compositeUnit, sampler->id());
     SurfacePool::Draws draws;
     draws.counts = {3, 3};

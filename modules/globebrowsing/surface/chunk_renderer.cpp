@@ -11,7 +11,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "globebrowsing/gpu/chunk_blocks.h"
-#include "globebrowsing/source/tile_layout.h"
+#include "globebrowsing/surface/chunk_sampling.h"
 
 namespace meridian::globebrowsing {
 
@@ -24,33 +24,6 @@ const double leastDaylight = std::asin(0.2);
 
 /// A skirt's foot is moved away from the middle of its chunk, which at the corners is halfway along the edge.
 constexpr double skirtFlare = 1.5;
-
-/// Tiles that touch a pole taper to nothing; in the others the wider edge is at most about twice the narrower.
-constexpr double polarTaper = 0.9;
-
-double texelsPerPixel(double texels, const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
-  const double meridian = glm::distance(surface.corners()[0], surface.corners()[2]);
-  return texels * chunk.distance / (meridian * view.pixelsPerRadian);
-}
-
-/// Of the shortest edge, seen from as far as its farthest corner, at the least slant that its ellipsoid normals allow:
-/// the most that any pixel can span.
-double mostTexelsPerPixel(double texels, const ChunkSurface& surface, const View& view) {
-  const auto& [northWest, northEast, southWest, southEast] = surface.corners();
-  const double edge = std::min({glm::distance(northWest, northEast), glm::distance(northWest, southWest),
-                                glm::distance(southWest, southEast), glm::distance(northEast, southEast)});
-  double distance = 0.0;
-  double slant = 0.0;
-  for (const glm::dvec3& corner : surface.corners()) {
-    const glm::dvec3 towardsEye = view.cameraPosition - corner;
-    const double length = glm::length(towardsEye);
-    distance = std::max(distance, length);
-    const ChunkSurface::NormalCone& cone = surface.normalCone();
-    slant = std::max(slant, std::acos(std::clamp(glm::dot(cone.axis, towardsEye) / length, -1.0, 1.0)) + cone.angle);
-  }
-  const double foreshortening = std::cos(std::min(slant, std::numbers::pi / 2.0));
-  return texels * distance / (edge * foreshortening * view.pixelsPerRadian);
-}
 
 /// A camera that is not a number never reaches the GPU.
 bool isFinite(const ViewBlock& view) {
@@ -71,25 +44,6 @@ bool isInDaylight(const ChunkSurface& surface, const glm::dvec3& light) {
   const ChunkSurface::NormalCone& cone = surface.normalCone();
   const double fromLight = std::acos(std::clamp(glm::dot(cone.axis, light), -1.0, 1.0));
   return fromLight + cone.angle < std::numbers::pi / 2.0 - leastDaylight;
-}
-
-Composer::Sampling samplingOf(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
-  constexpr double mostPolarTexelsPerPixel = 3.0;  // one that is shown much smaller needs all levels
-  // It may draw an ancestor's composite, of which it is a part.
-  const double texels = std::ldexp(colourLayout.interior, chunk.colourLevel - chunk.index.level);
-  if (std::abs(surface.taper()) > polarTaper) {
-    return texelsPerPixel(texels, surface, chunk, view) < mostPolarTexelsPerPixel ? Composer::Sampling::Polar
-                                                                                  : Composer::Sampling::Plain;
-  }
-  // A pixel's bilinear fetch spans two texels, so up to then none is passed over.
-  constexpr double mostMagnifiedTexelsPerPixel = 2.0;
-  return mostTexelsPerPixel(texels, surface, view) <= mostMagnifiedTexelsPerPixel ? Composer::Sampling::Magnified
-                                                                                  : Composer::Sampling::Plain;
-}
-
-int normalLevel(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
-  const double nodes = texelsPerPixel(ChunkSurface::nodes - 1, surface, chunk, view);
-  return nodes < 1.0 ? 0 : std::min(static_cast<int>(std::lround(std::log2(nodes))), NormalImage::levels - 1);
 }
 
 ChunkRenderer::ChunkRenderer(graphics::Graphics& graphics)
@@ -140,7 +94,7 @@ void ChunkRenderer::prepare(const Job& job, GlobeTiles& tiles) {
     if ((chunk.views >> job.viewNumber & 1U) == 0 || surface == nullptr || !slot) {
       continue;
     }
-    const bool night = !isInDaylight(*surface, job.view->lightDirection);
+    const bool night = programs_.key().night && !isInDaylight(*surface, job.view->lightDirection);
     const Placements composites = place(chunk, night, tiles);
     const bool fades = std::any_of(composites.begin(), composites.end(),
                                    [](const auto& placement) { return placement && placement->otherWeight > 0.0F; });
@@ -156,7 +110,7 @@ void ChunkRenderer::prepare(const Job& job, GlobeTiles& tiles) {
 }
 
 ChunkRenderer::Placements ChunkRenderer::place(const SelectedChunk& chunk, bool night, GlobeTiles& tiles) const {
-  const std::array<bool, compositeKindCount> used{true, programs_.key().night && night, programs_.key().overlay};
+  const std::array<bool, compositeKindCount> used{true, night, programs_.key().overlay};
   Placements placements;
   for (const CompositeKind kind : allCompositeKinds) {
     const auto i = static_cast<std::size_t>(kind);
@@ -175,8 +129,7 @@ bool ChunkRenderer::bindForDrawing(const GlobeTiles& tiles, const ChunkProgramUs
   }
   glUseProgram(program);
   glEnable(GL_CULL_FACE);
-  glBindTextureUnit(compositeUnit, tiles.composites().composer().composites());
-  glBindSampler(compositeUnit, tiles.composites().composer().samplers().of(sampling).id());
+  tiles.composites().composer().bindComposites(compositeUnit, sampling);
   if (programs_.key().blended) {
     enableBlending();
   }

@@ -21,12 +21,6 @@ namespace meridian::globebrowsing {
 /// unit direction towards the light, in model space.
 [[nodiscard]] bool isInDaylight(const ChunkSurface& surface, const glm::dvec3& light);
 
-/// The level of its normals that the chunk is drawn with: that whose nodes are nearest to a pixel apart.
-[[nodiscard]] int normalLevel(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view);
-
-/// How its composite is sampled.
-[[nodiscard]] Composer::Sampling samplingOf(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view);
-
 /// Draws selected chunks: one program, two array textures and one vertex array for all, and one call for all that are
 /// drawn alike. Render thread only; a steady frame allocates nothing.
 class ChunkRenderer {
@@ -60,10 +54,10 @@ class ChunkRenderer {
   /// What draws need different states for: a switch of program or sampler costs as much as several draws.
   struct Variant {
     ChunkProgramUse use;
-    Composer::Sampling sampling = Composer::Sampling::Plain;
+    Composer::Sampling sampling;
     auto operator<=>(const Variant&) const = default;
   };
-  static constexpr std::size_t variantCount = 12;
+  static constexpr std::size_t variantCount = 4 * (2 + Composer::levelCount);
   using Placements = std::array<std::optional<CompositeStore::Placement>, compositeKindCount>;
   struct Prepared {
     const SelectedChunk* chunk = nullptr;
