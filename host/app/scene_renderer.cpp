@@ -79,13 +79,6 @@ Result<void> SceneRenderer::draw(const Moment& moment, const navigation::Camera&
   }
   takeNewRenderables();
 
-  if (moment.isDrawn) {
-    timer_.begin();
-    // A software renderer starts on what was submitted when it is told to: it clears while scenes are selected.
-    target_.clear({0.0F, 0.0F, 0.0F, 1.0F});
-    glFlush();
-  }
-
   FrameContext frame;
   frame.time = moment.time;
   frame.deltaSeconds = moment.deltaSeconds;
@@ -105,7 +98,11 @@ Result<void> SceneRenderer::draw(const Moment& moment, const navigation::Camera&
   }
 
   if (moment.isDrawn) {
+    timer_.begin();
     target_.bind();
+    // With what is drawn, not before: a software renderer then clears each part of the picture where it draws it next,
+    // while that is in the processor's cache.
+    target_.clear({0.0F, 0.0F, 0.0F, 1.0F});
     drawItems(frame);
     timer_.end();
     gatherAttributions();
