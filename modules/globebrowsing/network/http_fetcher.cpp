@@ -187,6 +187,7 @@ void HttpFetcher::Engine::run() {
     if (const auto wake = queue_.wakeAt(now)) {
       timeout = std::min(timeout, std::chrono::ceil<std::chrono::milliseconds>(*wake - now));
     }
+    ++statistics_.wakeUps;
     transfers_.run(mailbox_->maySleep() ? timeout : std::chrono::milliseconds(0), endings);
     for (TransferEnding& ending : endings) {
       ended(std::move(ending));

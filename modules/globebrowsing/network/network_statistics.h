@@ -21,6 +21,7 @@ struct NetworkStatistics {
   Counter connections{0};   ///< opened
   Counter failures{0};      ///< requests that ended in an error
   Counter cancelled{0};
+  Counter wakeUps{0};  ///< of the network's thread: to send, to receive, to try again, or because it was told something
   Counter stored{0};   ///< answers written to disk
   Counter evicted{0};  ///< and dropped from it to stay within the budget
 

@@ -1,6 +1,5 @@
 // What servers write against the letter of the standards, and how much of it.
 
-#include <chrono>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -217,17 +216,15 @@ TEST(OddWms, BoxesPlaceLayersWithoutDegrees) {
 }
 
 // GeoServer lists every CRS that it knows for every layer. Each name is looked at once, whatever their number: what
-// compares all with all takes minutes here.
-TEST(OddWms, ManyCrsNamesTakeNoLonger) {
+// compares all with all takes longer than a test may.
+TEST(OddWms, ReadsVeryManyCrsNames) {
   std::string names;
   for (int code = 0; code < 150'000; ++code) {
     names += "<SRS>X:" + std::to_string(code) + "</SRS>";
   }
-  const auto begin = std::chrono::steady_clock::now();
   const auto capabilities = parse("<WMT_MS_Capabilities version=\"1.1.1\"><Capability><Layer><Name>a</Name>" + names +
                                   "<SRS>EPSG:4326</SRS></Layer></Capability></WMT_MS_Capabilities>");
   EXPECT_EQ(serviceOfOnly(capabilities).crs, "");
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
 }
 
 TEST(OddArcGis, BoxesHaveTheirEastingFirst) {
