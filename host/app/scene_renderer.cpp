@@ -79,6 +79,9 @@ Result<void> SceneRenderer::draw(const Moment& moment, const navigation::Camera&
   }
   takeNewRenderables();
 
+  if (moment.isDrawn) {
+    timer_.begin();
+  }
   FrameContext frame;
   frame.time = moment.time;
   frame.deltaSeconds = moment.deltaSeconds;
@@ -98,7 +101,6 @@ Result<void> SceneRenderer::draw(const Moment& moment, const navigation::Camera&
   }
 
   if (moment.isDrawn) {
-    timer_.begin();
     target_.bind();
     // With what is drawn, not before: a software renderer then clears each part of the picture where it draws it next,
     // while that is in the processor's cache.

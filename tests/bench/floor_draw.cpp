@@ -39,7 +39,8 @@ FloorDraw::FloorDraw(SettledGlobe& globe, glm::ivec2 size, const SurfaceFigures&
       size_(size),
       vertexArray_(graphics::VertexArray::create()),
       night_(figures.mostlyNight),
-      sampling_(figures.sampling) {
+      sampling_{quantile(figures.texelDensities, 0.5) <= 1.0 ? Composer::Sampling::Kind::OneLevel
+                                                             : Composer::Sampling::Kind::Plain} {
   makeGrid(figures);
   makeBlocks(figures);
 }

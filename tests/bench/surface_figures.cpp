@@ -167,9 +167,6 @@ SurfaceFigures measureSurface(SettledGlobe& globe, glm::ivec2 size) {
     const ChunkSurface* surface = globe.surface().tiles().surfaces().find(chunk.index);
     dark += surface != nullptr && !isInDaylight(*surface, view.lightDirection) ? 1 : 0;
   }
-  // It lies below the eye, and with its like fills most of the frame.
-  const SelectedChunk& nearest = globe.surface().selected().front();
-  figures.sampling = samplingOf(*globe.surface().tiles().surfaces().find(nearest.index), nearest, view);
   figures.mostlyNight = 2 * dark > globe.surface().selected().size();
   figures.texelDensities = texelDensities(globe, view);
   figures.coveredPixels = coveredPixels(globe, size);

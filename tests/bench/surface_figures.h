@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "globebrowsing/gpu/composer.h"
 #include "settled_globe.h"
 
 namespace meridian::bench {
@@ -16,9 +15,8 @@ struct SurfaceFigures {
   std::size_t coveredPixels = 0;
   /// Texels per pixel along a side, at places all over the picture, ascending; never empty.
   std::vector<double> texelDensities{1.0};
-  globebrowsing::Composer::Sampling sampling;  ///< of most of the frame
-  std::size_t normals = 0;                     ///< texels of all chunks' normals, at the level that each is drawn with
-  bool mostlyNight = false;                    ///< whether more chunks are drawn with night layers than without
+  std::size_t normals = 0;   ///< texels of all chunks' normals, at the level that each is drawn with
+  bool mostlyNight = false;  ///< whether more chunks are drawn with night layers than without
   double errorPixels = 0.0;  ///< greatest distance on screen from the surface drawn with a grid four times denser
 };
 

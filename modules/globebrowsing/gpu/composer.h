@@ -50,7 +50,7 @@ class Composer {
 
   /// How composites are sampled when chunks are drawn.
   struct Sampling {
-    enum class Kind : std::uint8_t { Plain, OneLevel, Polar };
+    enum class Kind : std::uint8_t { OneLevel, Polar, Plain };  ///< in the order of drawing: what is near first
     Kind kind = Kind::Plain;
     std::uint8_t level = 0;  ///< of OneLevel: 0 (full size) to levelCount - 1
     auto operator<=>(const Sampling&) const = default;

@@ -57,14 +57,25 @@ void warmChunks(GLuint program, bool blended) {
   if (blended) {
     chunk_bindings::enableBlending();
   }
-  glBindTextureUnit(chunk_bindings::compositeUnit, composites.id());
   glBindTextureUnit(chunk_bindings::normalUnit, normals.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, chunk_bindings::viewBlock, viewBlock.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, chunk_bindings::chunkBlock, chunkBlock.id());
   glUseProgram(program);
   glBindVertexArray(vertexArray.id());
-  for (const graphics::Sampler* sampler : {&samplers.plain, &samplers.oneLevel, &samplers.polar}) {
+  // The driver tells a view of the first level from one of another, and from all.
+  const auto levelView = [&](int level) {
+    return graphics::Texture::view(composites, GL_TEXTURE_2D_ARRAY, GL_RGBA8, level, 1);
+  };
+  const graphics::Texture first = levelView(0);
+  const graphics::Texture second = levelView(1);
+  const std::array<std::pair<const graphics::Sampler*, const graphics::Texture*>, 4> samplings{
+      {{&samplers.plain, &composites},
+       {&samplers.polar, &composites},
+       {&samplers.oneLevel, &first},
+       {&samplers.oneLevel, &second}}};
+  for (const auto& [sampler, texture] : samplings) {
     glBindSampler(chunk_bindings::compositeUnit, sampler->id());
+    glBindTextureUnit(chunk_bindings::compositeUnit, texture->id());
     SurfacePool::Draws draws;
     draws.counts = {3, 3};
     draws.firstElements = {nullptr, nullptr};

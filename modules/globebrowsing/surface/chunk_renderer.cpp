@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -11,7 +12,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "globebrowsing/gpu/chunk_blocks.h"
-#include "globebrowsing/surface/chunk_sampling.h"
+#include "globebrowsing/source/tile_layout.h"
 
 namespace meridian::globebrowsing {
 
@@ -67,8 +68,9 @@ std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
     return 0;
   }
   // Translucent ones are not sorted by what they are drawn with: each may differ from the last.
-  const std::size_t batches =
-      programs_.key().blended ? prepared_.size() : prepared_.size() / ChunkBlock::most + variantCount;
+  const std::size_t batches = programs_.key().blended
+                                  ? prepared_.size()
+                                  : std::min(prepared_.size(), prepared_.size() / ChunkBlock::most + variantCount);
   uniforms_.reserve(uniforms_.aligned(sizeof(ViewBlock)) + batches * uniforms_.aligned(sizeof(ChunkBlock)));
   uniforms_.writeAndBind(viewBlock, view);
 
@@ -98,7 +100,7 @@ void ChunkRenderer::prepare(const Job& job, GlobeTiles& tiles) {
     const Placements composites = place(chunk, night, tiles);
     const bool fades = std::any_of(composites.begin(), composites.end(),
                                    [](const auto& placement) { return placement && placement->otherWeight > 0.0F; });
-    const Variant variant{{night, fades}, samplingOf(*surface, chunk, *job.view)};
+    const Variant variant{{night, fades}, samplingOf(*surface, chunk, texelsAcross(composites), *job.view)};
     prepared_.push_back({&chunk, surface, *slot, variant, composites});
   }
   // What is translucent is drawn near to far whatever it takes: nothing may shine through the globe itself.
@@ -107,6 +109,17 @@ void ChunkRenderer::prepare(const Job& job, GlobeTiles& tiles) {
       return a.variant != b.variant ? a.variant < b.variant : a.chunk < b.chunk;
     });
   }
+}
+
+TexelsAcross ChunkRenderer::texelsAcross(const Placements& composites) {
+  TexelsAcross texels{std::numeric_limits<double>::infinity(), 0.0};
+  for (const auto& placement : composites) {
+    if (placement) {
+      const double across = double{placement->transform.z} * colourLayout.size();
+      texels = {std::min(texels.fewest, across), std::max(texels.most, across)};
+    }
+  }
+  return texels;
 }
 
 ChunkRenderer::Placements ChunkRenderer::place(const SelectedChunk& chunk, bool night, GlobeTiles& tiles) const {

@@ -12,6 +12,7 @@
 #include "globebrowsing/gpu/globe_tiles.h"
 #include "globebrowsing/gpu/uniform_ring.h"
 #include "globebrowsing/surface/chunk_programs.h"
+#include "globebrowsing/surface/chunk_sampling.h"
 #include "globebrowsing/surface/surface.h"
 #include "host/graphics/graphics.h"
 
@@ -68,6 +69,7 @@ class ChunkRenderer {
   };
   /// Finds what is to be drawn, and in which order.
   void prepare(const Job& job, GlobeTiles& tiles);
+  [[nodiscard]] static TexelsAcross texelsAcross(const Placements& composites);
   [[nodiscard]] Placements place(const SelectedChunk& chunk, bool night, GlobeTiles& tiles) const;
   /// At most ChunkBlock::most chunks of one variant.
   void drawBatch(std::span<const Prepared> batch, const Job& job, GlobeTiles& tiles);

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 
 #include <glm/geometric.hpp>
-
-#include "globebrowsing/source/tile_layout.h"
 
 namespace meridian::globebrowsing {
 
@@ -16,6 +15,9 @@ namespace {
 
 /// Tiles that touch a pole taper to nothing; in the others the wider edge is at most about twice the narrower.
 constexpr double polarTaper = 0.9;
+
+constexpr std::size_t side = chunk_grid::side;
+constexpr std::array<std::size_t, 4> cornerVertices{0, side - 1, side*(side - 1), side* side - 1};
 
 /// North to south, as if seen from straight above.
 double texelsPerPixel(double texels, const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
@@ -25,54 +27,68 @@ double texelsPerPixel(double texels, const ChunkSurface& surface, const Selected
 
 /// The half-size level whose texels are nearest to a pixel apart.
 int nearestLevel(double texelsPerPixel, int levels) {
-  return static_cast<int>(std::lround(std::log2(std::clamp(texelsPerPixel, 1.0, std::ldexp(1.0, levels - 1)))));
+  // Also where it is not a number.
+  return texelsPerPixel > 1.0
+             ? static_cast<int>(std::lround(std::log2(std::min(texelsPerPixel, std::ldexp(1.0, levels - 1)))))
+             : 0;
 }
 
-/// Texels that a pixel spans along the slant, where they are fewest in the chunk and where they are most, as if its
-/// shortest edge lay along the slant. Both grow with the distance from the point below the eye; infinite where the
-/// surface faces away.
-struct TexelsPerPixel {
+/// Metres that a pixel's longer side spans on the ellipsoid, for each metre of the tile's edge: where they are fewest,
+/// beside the longer edge, and where they are most, beside the shorter one. Infinite where the surface faces away.
+struct PixelSpan {
   double least = 0.0;
   double most = 0.0;
 };
 
-TexelsPerPixel slantedTexelsPerPixel(double texels, const ChunkSurface& surface, const SelectedChunk& chunk,
-                                     const View& view) {
+PixelSpan pixelSpan(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
   const auto& corners = surface.corners();
-  const double edge = std::min({glm::distance(corners[0], corners[1]), glm::distance(corners[0], corners[2]),
-                                glm::distance(corners[2], corners[3]), glm::distance(corners[1], corners[3])});
-  const double eye = glm::length(view.cameraPosition);
-  const auto at = [&](double distance, double radius) {
-    // Of the triangle from the body's centre to the eye and to a point of its surface.
-    const double cosine = ((eye - radius) * (eye + radius) - distance * distance) / (2.0 * radius * distance);
-    return cosine > 0.0 ? texels * distance / (std::min(cosine, 1.0) * edge * view.pixelsPerRadian)
-                        : std::numeric_limits<double>::infinity();
-  };
-  double leastRadius = std::numeric_limits<double>::infinity();
-  double most = 0.0;
-  for (const glm::dvec3& corner : corners) {
-    const double radius = glm::length(corner);
-    leastRadius = std::min(leastRadius, radius);
-    most = std::max(most, at(glm::distance(view.cameraPosition, corner), radius));
+  const std::array<double, 4> edges{glm::distance(corners[0], corners[1]), glm::distance(corners[0], corners[2]),
+                                    glm::distance(corners[2], corners[3]), glm::distance(corners[1], corners[3])};
+  const auto [shorter, longer] = std::minmax_element(edges.begin(), edges.end());
+
+  const HeightRange& heights = surface.heightRange();
+  const ChunkSurface::NormalCone& cone = surface.normalCone();
+  const glm::dvec3 middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]) +
+                            0.5 * (heights.minimum + heights.maximum) * cone.axis;
+  const glm::dvec3 towardsEye = view.cameraPosition - middle;
+  const double middleDistance = glm::length(towardsEye);
+  double radius = 0.0;
+  PixelSpan span;
+  for (std::size_t corner = 0; corner < corners.size(); ++corner) {
+    const auto& [x, y, z] = surface.vertices()[cornerVertices[corner]].normal;
+    const glm::dvec3 normal(x, y, z);
+    // Relief may bring the ground nearer to the eye's height, which is then seen at a greater slant.
+    for (const double height : {heights.minimum, heights.maximum}) {
+      const glm::dvec3 point = corners[corner] + height * normal;
+      const glm::dvec3 toEye = view.cameraPosition - point;
+      const double cosine = glm::dot(normal, toEye) / glm::length(toEye);
+      const double along = cosine > 0.0 ? glm::length(toEye) / cosine : std::numeric_limits<double>::infinity();
+      span.most = std::max(span.most, along / *shorter);
+      radius = std::max(radius, glm::distance(middle, point));
+    }
   }
-  return {at(chunk.distance, leastRadius), most};
+  // No point's slant is less than the middle's by more than its normal and its direction to the eye differ.
+  const double slant = std::acos(std::clamp(glm::dot(cone.axis, towardsEye) / middleDistance, -1.0, 1.0)) - cone.angle -
+                       std::asin(std::min(radius / middleDistance, 1.0));
+  const double cosine = std::cos(std::clamp(slant, 0.0, std::numbers::pi / 2.0));
+  span.least = chunk.distance * std::max(1.0 / *shorter, 1.0 / (*longer * cosine));
+  return span;
 }
 
 }  // namespace
 
-Composer::Sampling samplingOf(const ChunkSurface& surface, const SelectedChunk& chunk, const View& view) {
+Composer::Sampling samplingOf(const ChunkSurface& surface, const SelectedChunk& chunk, const TexelsAcross& texels,
+                              const View& view) {
   using Kind = Composer::Sampling::Kind;
-  constexpr double mostPolarTexelsPerPixel = 3.0;  // one that is shown much smaller needs all levels
-  // It may draw an ancestor's composite, of which it is a part.
-  const double texels = std::ldexp(colourLayout.interior, chunk.colourLevel - chunk.index.level);
   if (std::abs(surface.taper()) > polarTaper) {
-    return {texelsPerPixel(texels, surface, chunk, view) < mostPolarTexelsPerPixel ? Kind::Polar : Kind::Plain};
+    constexpr double mostPolarTexelsPerPixel = 3.0;  // one that is shown much smaller needs all levels
+    return {texelsPerPixel(texels.most, surface, chunk, view) < mostPolarTexelsPerPixel ? Kind::Polar : Kind::Plain};
   }
-  const TexelsPerPixel slanted = slantedTexelsPerPixel(texels, surface, chunk, view);
+  const PixelSpan span = pixelSpan(surface, chunk, view);
   // Nothing may be blurred where texels are fewest, and where they are most a pixel may pass over every other one: a
   // bilinear fetch spans two.
-  const int level = nearestLevel(slanted.least, Composer::levelCount);
-  if (slanted.most > std::ldexp(4.0, level)) {
+  const int level = nearestLevel(texels.fewest * span.least / view.pixelsPerRadian, Composer::levelCount);
+  if (!(texels.most * span.most / view.pixelsPerRadian <= std::ldexp(4.0, level))) {
     return {Kind::Plain};
   }
   return {Kind::OneLevel, static_cast<std::uint8_t>(level)};

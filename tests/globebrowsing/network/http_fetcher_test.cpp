@@ -415,7 +415,8 @@ TEST(HttpFetcher, WaitingCostsNothing) {
       one->pending().setPriority(i);
     }
   }
-  EXPECT_LT(fetcher.statistics().wakeUps - before, static_cast<std::uint64_t>(frames)) << "less than one a frame";
+  EXPECT_LT(fetcher.statistics().wakeUps - before, static_cast<std::uint64_t>(frames) / 2)
+      << "some are for another try";
   EXPECT_LT(fetcher.statistics().transfers, 30U);
 }
 

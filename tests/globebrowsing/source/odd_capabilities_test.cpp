@@ -219,7 +219,7 @@ TEST(OddWms, BoxesPlaceLayersWithoutDegrees) {
 // compares all with all takes longer than a test may.
 TEST(OddWms, ReadsVeryManyCrsNames) {
   std::string names;
-  for (int code = 0; code < 150'000; ++code) {
+  for (int code = 0; code < 500'000; ++code) {
     names += "<SRS>X:" + std::to_string(code) + "</SRS>";
   }
   const auto capabilities = parse("<WMT_MS_Capabilities version=\"1.1.1\"><Capability><Layer><Name>a</Name>" + names +

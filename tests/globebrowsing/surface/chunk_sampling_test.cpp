@@ -21,17 +21,22 @@ constexpr double pixelsPerRadian = 1000.0;
 class ChunkSamplingTest : public testing::Test {
  protected:
   /// Of a tile at the equator whose western edge is at longitude 0, seen from above 0, 0.
-  [[nodiscard]] Composer::Sampling seenFrom(double altitude, const TileIndex& index, int colourLevel) const {
+  [[nodiscard]] Composer::Sampling seenFrom(double altitude, const TileIndex& index, int colourLevel,
+                                            float height = 0.0F) const {
+    const double texels = std::ldexp(double{colourLayout.interior}, colourLevel - index.level);
+    return seenFrom(altitude, index, TexelsAcross{texels, texels}, height);
+  }
+  [[nodiscard]] Composer::Sampling seenFrom(double altitude, const TileIndex& index, const TexelsAcross& texels,
+                                            float height = 0.0F) const {
     const std::size_t nodes = static_cast<std::size_t>(ChunkSurface::heightSide) * ChunkSurface::heightSide;
-    const ChunkSurface surface(tiling_, index, std::vector<float>(nodes, 0.0F));
+    const ChunkSurface surface(tiling_, index, std::vector<float>(nodes, height));
     View view;
     view.cameraPosition = {radius + altitude, 0.0, 0.0};
     view.pixelsPerRadian = pixelsPerRadian;
     SelectedChunk chunk;
     chunk.index = index;
-    chunk.colourLevel = colourLevel;
-    chunk.distance = glm::distance(view.cameraPosition, nearest(surface));
-    return samplingOf(surface, chunk, view);
+    chunk.distance = glm::distance(view.cameraPosition, nearest(surface) * (1.0 + double{height} / radius));
+    return samplingOf(surface, chunk, texels, view);
   }
   /// How high to be for so many texels a pixel straight below.
   [[nodiscard]] static double altitudeFor(double texelsPerPixel, int colourLevel) {
@@ -72,6 +77,27 @@ TEST_F(ChunkSamplingTest, APartOfAnAncestorsCompositeIsSampledLikeIt) {
   const double altitude = altitudeFor(2.0, 5);
   EXPECT_EQ(seenFrom(altitude, besideTheMeridian(0), 5), (Composer::Sampling{Kind::OneLevel, 1}));
   EXPECT_EQ(seenFrom(altitude, besideTheMeridian(0), 7), (Composer::Sampling{Kind::OneLevel, 3}));
+}
+
+TEST_F(ChunkSamplingTest, TheCoarsestOfSeveralCompositesIsNotBlurred) {
+  const double altitude = altitudeFor(2.0, 7);
+  const double full = colourLayout.interior;
+  EXPECT_EQ(seenFrom(altitude, besideTheMeridian(0), {full, full}), (Composer::Sampling{Kind::OneLevel, 1}));
+  EXPECT_EQ(seenFrom(altitude, besideTheMeridian(0), {full / 2.0, full}), (Composer::Sampling{Kind::OneLevel, 0}));
+  EXPECT_EQ(seenFrom(altitude, besideTheMeridian(0), {full / 8.0, 8.0 * full}).kind, Kind::Plain);
+}
+
+TEST_F(ChunkSamplingTest, GroundIsSeenFromItsOwnHeight) {
+  // 150 m wide, and from 1 km above it three texels a pixel; from as high over the ellipsoid that would be another.
+  const TileIndex tile{1, 17, 0, 1 << 16};
+  for (const float height : {-7000.0F, 0.0F, 5000.0F}) {
+    const double texels = 3.0 * pixelsPerRadian * std::numbers::pi * radius / (1 << 17) / 1000.0;
+    EXPECT_EQ(seenFrom(double{height} + 1000.0, tile, {texels, texels}, height),
+              (Composer::Sampling{Kind::OneLevel, 2}))
+        << height;
+  }
+  // A plateau that fills the view to its horizon.
+  EXPECT_EQ(seenFrom(6000.0, besideTheMeridian(0), 7, 5000.0F).kind, Kind::Plain);
 }
 
 TEST_F(ChunkSamplingTest, NothingIsBlurredByMoreThanTheSlantItself) {
