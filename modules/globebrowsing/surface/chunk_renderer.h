@@ -52,7 +52,7 @@ class ChunkRenderer {
   void unbind() const;
 
  private:
-  /// What draws need different states for: a switch of program or sampler costs as much as several draws.
+  /// What draws need different states for: a switch of program, texture or sampler costs as much as several draws.
   struct Variant {
     ChunkProgramUse use;
     Composer::Sampling sampling;
