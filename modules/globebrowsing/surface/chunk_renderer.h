@@ -58,7 +58,7 @@ class ChunkRenderer {
     Composer::Sampling sampling;
     auto operator<=>(const Variant&) const = default;
   };
-  static constexpr std::size_t variantCount = 4 * (2 + Composer::levelCount);
+  static constexpr std::size_t variantCount = std::size_t{4} * (2 + Composer::levelCount);
   using Placements = std::array<std::optional<CompositeStore::Placement>, compositeKindCount>;
   struct Prepared {
     const SelectedChunk* chunk = nullptr;
