@@ -33,8 +33,9 @@ int nearestLevel(double texelsPerPixel, int levels) {
              : 0;
 }
 
-/// Metres that a pixel's longer side spans on the ellipsoid, for each metre of the tile's edge: where they are fewest,
-/// beside the longer edge, and where they are most, beside the shorter one. Infinite where the surface faces away.
+/// How many of the tile's edges a radian of the view spans along the slant (divided by pixels per radian: the share of
+/// an edge that a pixel's longer side spans). At the least anywhere in the chunk, and at the most, which is infinite
+/// where the surface faces away.
 struct PixelSpan {
   double least = 0.0;
   double most = 0.0;
