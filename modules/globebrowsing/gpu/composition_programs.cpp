@@ -80,8 +80,11 @@ void warmHalfSize(GLuint program) {
 
 }  // namespace
 
+CompositionPrograms::CompositionPrograms(graphics::Graphics& graphics)
+    : graphics_(graphics), loopsMeanwhile_(!graphics.limits().software) {}
+
 Result<void> CompositionPrograms::request() {
-  Result<graphics::ProgramDescription> loop = describe("compose/loop", loopLayers, std::string(loopBody));
+  Result<graphics::ProgramDescription> loop = describeLoop();
   Result<graphics::ShaderSource> vertex = graphics_.templates().load("gpu/fill.vert");
   Result<graphics::ShaderSource> fragment = graphics_.templates().load("gpu/half_size.frag");
   for (const Error* error :
@@ -91,8 +94,29 @@ Result<void> CompositionPrograms::request() {
     }
   }
   halfSize_ = graphics_.programs().request({"compose/half size", *vertex, *fragment, warmHalfSize});
-  loop_ = graphics_.programs().request(*std::move(loop));
+  loopMeanwhile(loopsMeanwhile_);
   return {};
+}
+
+void CompositionPrograms::loopMeanwhile(bool loops) {
+  loopsMeanwhile_ = loops;
+  if (loops) {
+    requestLoop();
+  }
+}
+
+Result<graphics::ProgramDescription> CompositionPrograms::describeLoop() const {
+  return describe("compose/loop", loopLayers, std::string(loopBody));
+}
+
+void CompositionPrograms::requestLoop() {
+  if (loop_) {
+    return;
+  }
+  // request() has read the templates without error.
+  if (Result<graphics::ProgramDescription> description = describeLoop()) {
+    loop_ = graphics_.programs().request(*std::move(description));
+  }
 }
 
 Result<graphics::ProgramDescription> CompositionPrograms::describe(std::string key, std::size_t layers,
@@ -117,6 +141,9 @@ Result<graphics::ProgramDescription> CompositionPrograms::describe(std::string k
 void CompositionPrograms::setStructure(CompositeKind kind, const StructureKey& key) {
   Kind& own = kinds_[static_cast<std::size_t>(kind)];
   if (own.requested && own.key == key) {
+    if (hasOwnFailed(kind)) {
+      requestLoop();
+    }
     return;
   }
   own.key = key;
@@ -136,7 +163,8 @@ GLuint CompositionPrograms::program(CompositeKind kind) const {
   if (const GLuint exact = graphics_.programs().ready(own.program)) {
     return exact;
   }
-  return own.key.layers().size() <= loopLayers ? graphics_.programs().ready(loop_) : 0;
+  const bool mayLoop = own.key.layers().size() <= loopLayers && (loopsMeanwhile_ || hasOwnFailed(kind));
+  return mayLoop ? graphics_.programs().ready(loop_) : 0;
 }
 
 bool CompositionPrograms::isOwnReady(CompositeKind kind) const {

@@ -37,21 +37,25 @@ static_assert(sizeof(PlacementHead) == 32);
 }  // namespace composition_bindings
 
 /// The programs that compose. For each structure key one is generated and built in the background; until it is ready
-/// one that loops over the layers at run time composes. Settings are uniforms and never recompile. Owned by Composer.
-/// Render thread only.
+/// one that loops over the layers at run time composes, if that is worth while, or else nothing does and what was
+/// composed before is drawn. Settings are uniforms and never recompile. Owned by Composer. Render thread only.
 class CompositionPrograms {
  public:
   /// As many layers as the looping program takes; more wait for the program of their own.
   static constexpr std::size_t loopLayers = 64;
 
-  explicit CompositionPrograms(graphics::Graphics& graphics) : graphics_(graphics) {}
+  explicit CompositionPrograms(graphics::Graphics& graphics);
 
   /// Once, before all else: asks for those that do not depend on layers. Errors: shader templates missing or wrong.
   Result<void> request();
+  /// Whether the looping program composes while a structure's own is being built. Unless told, not by software: its
+  /// branches cost whether taken or not, and one composite of three layers takes longer than a frame may (120 ms, its
+  /// own program 8), while the own program is there in half a second. One that cannot be built is stood in for anyway.
+  void loopMeanwhile(bool loops);
   /// Asks for the program of that kind's structure. Cheap when nothing changed.
   void setStructure(CompositeKind kind, const StructureKey& key);
 
-  /// The structure's own, or the looping one; 0 while none is ready.
+  /// The structure's own, or the looping one where that may stand in; 0 while none is ready.
   [[nodiscard]] GLuint program(CompositeKind kind) const;
   /// Draws a half-size level; 0 while it is not ready, and then so are all others.
   [[nodiscard]] GLuint halfSize() const { return graphics_.programs().ready(halfSize_); }
@@ -71,8 +75,11 @@ class CompositionPrograms {
 
   [[nodiscard]] Result<graphics::ProgramDescription> describe(std::string key, std::size_t layers,
                                                               std::string body) const;
+  [[nodiscard]] Result<graphics::ProgramDescription> describeLoop() const;
+  void requestLoop();
 
   graphics::Graphics& graphics_;
+  bool loopsMeanwhile_;
   std::array<Kind, compositeKindCount> kinds_;
   graphics::ProgramHandle loop_;
   graphics::ProgramHandle halfSize_;

@@ -227,6 +227,8 @@ TEST_F(ComposerTest, TheLoopingProgramDrawsWhatTheUnrolledOneDoes) {
   const auto upperTile = randomTile();
   const std::vector<CompositionPart> parts{part(lower, lowerTile.get()), part(solid, nullptr),
                                            part(upper, upperTile.get())};
+  composer_->programs().loopMeanwhile(true);
+  graphics_->programs().waitAll();
   std::vector<std::uint8_t> looped;
   {
     const HeldBuilder held(graphics_->programs());
@@ -244,6 +246,18 @@ TEST_F(ComposerTest, TheLoopingProgramDrawsWhatTheUnrolledOneDoes) {
     worst = std::max(worst, std::abs(int{looped[i]} - int{unrolled[i]}));
   }
   EXPECT_LE(worst, 1);
+}
+
+TEST_F(ComposerTest, TheLoopingProgramStandsInOnlyWhereItMay) {
+  for (const bool loops : {true, false}) {
+    composer_->programs().loopMeanwhile(loops);
+    graphics_->programs().waitAll();
+    addSolidLayer({0.1, 0.2, 0.3});
+    const HeldBuilder held(graphics_->programs());
+    useStructure(false);
+    ASSERT_FALSE(composer_->programs().isOwnReady(CompositeKind::Base));
+    EXPECT_EQ(composer_->programs().program(CompositeKind::Base) != 0, loops);
+  }
 }
 
 TEST_F(ComposerTest, HalfSizesAreTheMeansOfFourTexels) {

@@ -197,6 +197,8 @@ TEST_F(ReliefCompositionTest, IsolinesAreWhereHeightsAreMultiplesOfTheInterval) 
 
 TEST_F(ReliefCompositionTest, TheLoopingProgramDrawsThemToo) {
   const std::vector<std::uint8_t> own = compose({{"Type", "Hillshade"}});
+  composer_->programs().loopMeanwhile(true);
+  graphics_->programs().waitAll();
   // Enabled layers of more kinds than any program has been made for.
   const auto added = manager_.addLayer(
       "Overlays",
