@@ -5,6 +5,9 @@ EARTH_RADII = (6378137.0, 6356752.314245)
 # Noon in Greenwich at the June solstice: the northern flights below are in daylight. TDB seconds past J2000.
 SIMULATION_TIME = 14860864.184
 FRAMES_PER_SECOND = 30
+# The program's defaults.
+FIELD_OF_VIEW_DEGREES = 50
+PICTURE_HEIGHT = 720
 
 
 def nadir_pose(latitude_degrees, longitude_degrees, altitude):
@@ -36,10 +39,24 @@ def quaternion(x, y, z):
     return (x[1] - y[0]) / s, (z[0] + x[2]) / s, (z[1] + y[2]) / s, s / 4
 
 
-def orbit_to_1000_km(frames):
-    """The flight that the peers were measured on: 20 000 km to 1000 km, exponentially, from 10 N 30 W to 40 N 30 E."""
+def places_to_1000_km(frames):
+    """The flight that the peers were measured on: 20 000 km to 1000 km, exponentially, from 10 N 30 W to 40 N 30 E. For
+    each frame latitude, longitude (degrees) and altitude (metres)."""
     steps = [frame / (frames - 1) for frame in range(frames)]
-    return [nadir_pose(10 + 30 * t, -30 + 60 * t, 2e7 * (1e6 / 2e7) ** t) for t in steps]
+    return [(10 + 30 * t, -30 + 60 * t, 2e7 * (1e6 / 2e7) ** t) for t in steps]
+
+
+def orbit_to_1000_km(frames):
+    """Its poses."""
+    return [nadir_pose(*place) for place in places_to_1000_km(frames)]
+
+
+def outlines_to_1000_km(frames):
+    """The same for a globe without perspective: latitude, longitude, and the radius in pixels of the Earth's outline."""
+    scale = PICTURE_HEIGHT / 2 / math.tan(math.radians(FIELD_OF_VIEW_DEGREES) / 2)
+    a = EARTH_RADII[0]
+    return [(latitude, longitude, round(scale * a / math.sqrt(altitude * (2 * a + altitude))))
+            for latitude, longitude, altitude in places_to_1000_km(frames)]
 
 
 def descent_to_the_alps(frames):

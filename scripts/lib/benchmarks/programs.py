@@ -21,14 +21,14 @@ class Failed(Exception):
     """A benchmark that gives no figure, and why."""
 
 
-def run(program, *arguments, environment=None, timeout=1800):
-    """Runs a program of the build; its standard output."""
+def run(program, *arguments, stdin="", environment=None, timeout=1800):
+    """Runs a program of the build with that text to read; its standard output."""
     path = BIN / program
     if not path.exists():
         raise Failed(f"build/release/bin/{program}: no such program")
     try:
         done = subprocess.run([path, *map(str, arguments)], env=environment, timeout=timeout, text=True,
-                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                              input=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     except subprocess.TimeoutExpired:
         raise Failed(f"{program}: not done after {timeout} s") from None
     if done.returncode != 0:
