@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include "../streaming/streamer_fixture.h"
 #include "globebrowsing/gpu/composite_owners.h"
 #include "globebrowsing/layers/layer_manager.h"
-#include "globebrowsing/streaming/tile_streamer.h"
 #include "globebrowsing/tiling/geodetic_tiling.h"
 #include "host/api/statistics.h"
 
@@ -82,7 +82,7 @@ class CompositesTest : public testing::Test {
       std::make_shared<GeodeticTiling>(*Ellipsoid::fromRadii({6378137.0, 6378137.0, 6356752.314245}));
   Statistics statistics_;
   WorkerPool workers_{1};
-  TileStreamer streamer_{workers_, statistics_};
+  TileStreamer streamer_{workers_, statistics_, takingAll};
   LayerManager layers_{{&workers_, &streamer_}};
   CompositeOwners::Generations generations_;
   std::uint32_t reliefStream_ = 1;

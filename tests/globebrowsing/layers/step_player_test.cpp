@@ -86,7 +86,7 @@ class StepPlayerTest : public testing::Test {
 
   Statistics statistics_;
   WorkerPool workers_{1};
-  TileStreamer streamer_{workers_, statistics_};
+  TileStreamer streamer_{workers_, statistics_, takingAll};
   TestSeries series_;
   StepPlayer player_{&workers_, &streamer_};
 };

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "../source/fake_fetcher.h"
+#include "../streaming/streamer_fixture.h"
 #include "globebrowsing/source/tiled_service_source.h"
-#include "globebrowsing/streaming/tile_streamer.h"
 #include "provider_fixture.h"
 
 namespace meridian::globebrowsing {
@@ -119,7 +119,7 @@ class ServiceJobs : public testing::Test {
   std::shared_ptr<const Tiling> tiling_ = std::make_shared<GeodeticTiling>(earthTiling());
   std::shared_ptr<TileProvider> provider_ = std::make_shared<ServiceProvider>(store_);
   Statistics statistics_;
-  TileStreamer streamer_{pool_, statistics_};
+  TileStreamer streamer_{pool_, statistics_, takingAll};
   std::uint32_t stream_ = streamer_.newStream();
 };
 

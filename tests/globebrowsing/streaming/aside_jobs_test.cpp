@@ -110,7 +110,7 @@ class AsideJobs : public testing::Test {
   Elsewhere elsewhere_;
   WorkerPool pool_{1};
   Statistics statistics_;
-  TileStreamer streamer_{pool_, statistics_};
+  TileStreamer streamer_{pool_, statistics_, takingAll};
   std::uint32_t stream_ = streamer_.newStream();
 };
 

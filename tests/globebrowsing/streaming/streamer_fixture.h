@@ -10,6 +10,9 @@
 
 namespace meridian::globebrowsing {
 
+/// With these a frame takes all that is finished, however busy the machine is.
+inline constexpr TileStreamerOptions takingAll{.takeMilliseconds = 1e9};
+
 /// A tile of a given size that knows which it is.
 class CountedTile final : public TileData {
  public:

@@ -41,7 +41,7 @@ class TileStreamerTest : public testing::Test {
 
   WorkerPool pool_{1};
   Statistics statistics_;
-  TileStreamer streamer_{pool_, statistics_};
+  TileStreamer streamer_{pool_, statistics_, takingAll};
   std::uint32_t stream_ = streamer_.newStream();
 };
 
