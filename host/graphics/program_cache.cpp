@@ -64,6 +64,7 @@ struct ProgramHandle::Entry {
   Error error;
   Clock::time_point usableFrom{};  ///< when the driver has kept the machine code
   std::atomic<State> state{State::Building};
+  bool isUrgent = true;  ///< guarded by the cache's mutex
   // The render thread's.
   std::uint64_t lastUse = 0;
   bool settled = false;  ///< usableFrom has passed
@@ -117,6 +118,8 @@ struct ProgramCache::Implementation {
   std::thread thread;
 
   void run();
+  /// The first that is urgent, else the first; the queue is not empty and the mutex held.
+  [[nodiscard]] std::shared_ptr<Entry> takeNext();
   /// Draws again on a context that has not seen the program: it finds the machine code in the driver's cache, or takes
   /// as long as the cache needs to be written, however busy the machine is.
   void proveCached(const ProgramDescription& description, GLuint program) const;
@@ -147,6 +150,15 @@ void ProgramCache::Implementation::proveCached(const ProgramDescription& descrip
   }
 }
 
+std::shared_ptr<ProgramHandle::Entry> ProgramCache::Implementation::takeNext() {
+  auto next =
+      std::find_if(queue.begin(), queue.end(), [](const std::shared_ptr<Entry>& entry) { return entry->isUrgent; });
+  next = next == queue.end() ? queue.begin() : next;
+  std::shared_ptr<Entry> entry = std::move(*next);
+  queue.erase(next);
+  return entry;
+}
+
 void ProgramCache::Implementation::run() {
   // Frames come first; on Linux both calls are about the calling thread alone. Refused it stays as it is.
   setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + 5);
@@ -160,8 +172,7 @@ void ProgramCache::Implementation::run() {
     if (stopping) {
       break;
     }
-    const std::shared_ptr<Entry> entry = std::move(queue.front());
-    queue.pop_front();
+    const std::shared_ptr<Entry> entry = takeNext();
     building = true;
     lock.unlock();
     const bool warms = entry->description.warmUp != nullptr;
@@ -252,15 +263,19 @@ ProgramCache::~ProgramCache() {
   }
 }
 
-ProgramHandle ProgramCache::request(ProgramDescription description) {
+ProgramHandle ProgramCache::request(ProgramDescription description, Urgency urgency) {
   Implementation& self = *implementation_;
+  const bool isUrgent = urgency == Urgency::Now;
   if (ProgramHandle known = find(description.key)) {
     ++self.statistics.programs.cached;
+    const std::lock_guard lock(self.mutex);
+    known.entry_->isUrgent = known.entry_->isUrgent || isUrgent;
     return known;
   }
   auto entry = std::make_shared<ProgramHandle::Entry>();
   entry->key = description.key;
   entry->description = std::move(description);
+  entry->isUrgent = isUrgent;
   entry->lastUse = ++self.uses;
   self.entries.emplace(entry->key, entry);
   {
@@ -279,8 +294,12 @@ ProgramHandle ProgramCache::find(std::string_view key) const {
   return found != implementation_->entries.end() ? ProgramHandle(found->second) : ProgramHandle();
 }
 
+bool ProgramCache::hasFailed(const ProgramHandle& handle) const {
+  return handle && handle.entry_->state.load(std::memory_order_acquire) == ProgramHandle::Entry::State::Failed;
+}
+
 Result<GLuint> ProgramCache::get(const ProgramHandle& handle) const {
-  if (handle && handle.entry_->state.load(std::memory_order_acquire) == ProgramHandle::Entry::State::Failed) {
+  if (hasFailed(handle)) {
     return tl::make_unexpected(handle.entry_->error);
   }
   return ready(handle);

@@ -39,7 +39,8 @@ class ProgramHandle {
 /// proves that the driver has kept the machine code where the first context finds it. So a frame that uses it never
 /// waits.
 /// Programs that somebody holds a handle to stay; of the others the `capacity` most recently used stay. A request whose
-/// handles are all gone before its turn is dropped. Requests are built in their order.
+/// handles are all gone before its turn is dropped. Requests are built in their order, those for later after the
+/// others.
 ///
 /// All functions are for the render thread, with the first context current. It must die before that context does.
 class ProgramCache {
@@ -47,6 +48,7 @@ class ProgramCache {
   struct Options {
     std::size_t capacity = 64;  ///< programs kept that nobody holds
   };
+  enum class Urgency { Now, Later };
 
   /// Starts the warm-up thread. Errors: no second context.
   [[nodiscard]] static Result<std::unique_ptr<ProgramCache>> create(Context& context, Statistics& statistics,
@@ -59,14 +61,17 @@ class ProgramCache {
   ProgramCache(const ProgramCache&) = delete;
   ProgramCache& operator=(const ProgramCache&) = delete;
 
-  /// The program of that key, building it when it is new. Never waits.
-  [[nodiscard]] ProgramHandle request(ProgramDescription description);
+  /// The program of that key, building it when it is new. One that was asked for later may be asked for now. Never
+  /// waits.
+  [[nodiscard]] ProgramHandle request(ProgramDescription description, Urgency urgency = Urgency::Now);
   /// The program of that key if it has been requested and is still kept, ready or not; else an empty handle.
   [[nodiscard]] ProgramHandle find(std::string_view key) const;
   /// 0 while it is being built. Errors: it cannot be built; a compiler's error carries template file and line.
   [[nodiscard]] Result<GLuint> get(const ProgramHandle& handle) const;
   /// The program if it is ready, else 0; no error, no allocation: for the frame.
   [[nodiscard]] GLuint ready(const ProgramHandle& handle) const;
+  /// Whether it cannot be built; as cheap.
+  [[nodiscard]] bool hasFailed(const ProgramHandle& handle) const;
 
   /// Builds at once, on the calling thread and the first context, with its warm-up draw: for the few tiny programs that
   /// the first frame needs. When called between frames begun and ended it counts as a frame that waited.

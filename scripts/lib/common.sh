@@ -51,14 +51,13 @@ install_packages() {
   as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600)
   "${as_root[@]}" update </dev/null
   "${as_root[@]}" install --yes --no-install-recommends "${missing[@]}" </dev/null
-  installed_some=1
 }
 
-# Configures the preset, unless that is done: Ninja itself notices changed CMake files, but not changed presets, nor
-# libraries that CMake did not find before.
+# Configures the preset, unless that is done: Ninja itself notices changed CMake files, but neither changed presets nor
+# libraries installed since.
 configure() {
   local preset=$1 ninja_file=$root/build/$1/build.ninja
-  [[ -e $ninja_file && $ninja_file -nt $root/CMakePresets.json && ! ${installed_some-} ]] && return 0
+  [[ -e $ninja_file && $ninja_file -nt $root/CMakePresets.json && $ninja_file -nt /var/lib/dpkg/status ]] && return 0
   say "configuring $preset"
   (cd "$root" && cmake --preset "$preset")
 }

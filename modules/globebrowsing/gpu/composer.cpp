@@ -229,6 +229,10 @@ void Composer::bindBlocks(CompositeKind kind, std::span<const CompositionPart> p
   uniforms_.bind(placementBlock, placements);
 }
 
+bool Composer::canCompose(CompositeKind kind, std::span<const CompositionPart> parts) const {
+  return isHidingAll(parts) ? programs_.halfSize() != 0 : programs_.program(kind) != 0;
+}
+
 bool Composer::compose(std::uint32_t slot, CompositeKind kind, std::span<const CompositionPart> parts) {
   if (isHidingAll(parts)) {
     upload(composites_, slot, *parts.back().tile);

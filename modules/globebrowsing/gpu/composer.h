@@ -77,8 +77,10 @@ class Composer {
 
   void beginFrame(std::uint64_t frame);
   void endFrame();
-  /// Composes into that array layer, with programs().program(kind). False when the raw tiles of this frame fill their
-  /// pool: try in the next frame.
+  /// Whether the programs that composing them takes are ready.
+  [[nodiscard]] bool canCompose(CompositeKind kind, std::span<const CompositionPart> parts) const;
+  /// Composes into that array layer what can be composed. False when the raw tiles of this frame fill their pool: try
+  /// in the next frame.
   bool compose(std::uint32_t slot, CompositeKind kind, std::span<const CompositionPart> parts);
 
   /// Bytes of the raw tiles and relief tiles that are there.

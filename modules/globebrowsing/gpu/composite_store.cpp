@@ -60,7 +60,7 @@ void CompositeStore::updateKind(CompositeKind kind) {
   gathering_.keepStandIns(generations.shown().steps);
   of(kind).opening.update(generations.layers());
   of(kind).fade.update(generations.layers(), frame_);
-  if (inUse(kind)) {
+  if (kind == CompositeKind::Base || !generations.layers().empty()) {
     composer_->programs().setStructure(kind, generations.key());
   }
 }
@@ -168,7 +168,7 @@ void CompositeStore::request(CompositeGathering::Request request) {
   }
   request.isMissing = request.isMissing && (!generations.isNext(key.side) || generations.pair().isMixed);
   missing_ += request.isMissing ? 1 : 0;
-  if (composer_->programs().program(key.kind) != 0 && !of(key.kind).opening.waits()) {
+  if (!of(key.kind).opening.waits()) {
     request.generations = &generations;
     request.opacities = &of(key.kind).fade.opacities();
     request.there = find(key);
@@ -221,6 +221,9 @@ void CompositeStore::compose(double milliseconds) {
   for (const CompositeGathering::Queued& queued : gathering_.sorted()) {
     if (spent >= milliseconds) {
       break;
+    }
+    if (!composer_->canCompose(queued.key.kind, gathering_.parts(queued))) {
+      continue;  // its tiles come meanwhile
     }
     const Composed composed = composeOne(queued);
     if (composed == Composed::NoRawTiles) {
@@ -339,7 +342,7 @@ std::string CompositeStore::waitingFor() const {
         kindBetweenSteps() == kind) {
       return fmt::format("{} shows one of two times", generations.interpolated()->uri());
     }
-    if (inUse(kind) && !composer_->programs().isOwnReady(kind) && !composer_->programs().hasOwnFailed(kind)) {
+    if (inUse(kind) && composer_->programs().isOwnPending(kind)) {
       return "a composition program is being built";
     }
   }

@@ -78,9 +78,10 @@ class CompositeStore {
   };
   [[nodiscard]] std::optional<Placement> place(CompositeKind kind, const TileIndex& index, int colourLevel);
 
-  /// Whether any enabled layer is of that kind; Base always is in use.
+  /// Whether any enabled layer is of that kind and can be composed; Base always is in use.
   [[nodiscard]] bool inUse(CompositeKind kind) const {
-    return kind == CompositeKind::Base || !generations(kind).layers().empty();
+    return kind == CompositeKind::Base ||
+           (!generations(kind).layers().empty() && !composer_->programs().hasFailed(kind));
   }
   /// Whether the base's alpha is less than 1 where there is water.
   [[nodiscard]] bool hasWater() const { return !layers_.group(LayerGroupId::WaterMasks).enabledLayers().empty(); }

@@ -81,10 +81,10 @@ void warmHalfSize(GLuint program) {
 }  // namespace
 
 CompositionPrograms::CompositionPrograms(graphics::Graphics& graphics)
-    : graphics_(graphics), loopsMeanwhile_(!graphics.limits().software) {}
+    : graphics_(graphics), loops_(!graphics.limits().software) {}
 
 Result<void> CompositionPrograms::request() {
-  Result<graphics::ProgramDescription> loop = describeLoop();
+  Result<graphics::ProgramDescription> loop = describe("compose/loop", loopLayers, std::string(loopBody));
   Result<graphics::ShaderSource> vertex = graphics_.templates().load("gpu/fill.vert");
   Result<graphics::ShaderSource> fragment = graphics_.templates().load("gpu/half_size.frag");
   for (const Error* error :
@@ -94,28 +94,15 @@ Result<void> CompositionPrograms::request() {
     }
   }
   halfSize_ = graphics_.programs().request({"compose/half size", *vertex, *fragment, warmHalfSize});
-  loopMeanwhile(loopsMeanwhile_);
+  loopDescription_ = *std::move(loop);
+  setLooping(loops_);
   return {};
 }
 
-void CompositionPrograms::loopMeanwhile(bool loops) {
-  loopsMeanwhile_ = loops;
-  if (loops) {
-    requestLoop();
-  }
-}
-
-Result<graphics::ProgramDescription> CompositionPrograms::describeLoop() const {
-  return describe("compose/loop", loopLayers, std::string(loopBody));
-}
-
-void CompositionPrograms::requestLoop() {
-  if (loop_) {
-    return;
-  }
-  // request() has read the templates without error.
-  if (Result<graphics::ProgramDescription> description = describeLoop()) {
-    loop_ = graphics_.programs().request(*std::move(description));
+void CompositionPrograms::setLooping(bool loops) {
+  loops_ = loops;
+  if (loops && !loop_) {
+    loop_ = graphics_.programs().request(loopDescription_);
   }
 }
 
@@ -141,9 +128,6 @@ Result<graphics::ProgramDescription> CompositionPrograms::describe(std::string k
 void CompositionPrograms::setStructure(CompositeKind kind, const StructureKey& key) {
   Kind& own = kinds_[static_cast<std::size_t>(kind)];
   if (own.requested && own.key == key) {
-    if (hasOwnFailed(kind)) {
-      requestLoop();
-    }
     return;
   }
   own.key = key;
@@ -163,8 +147,7 @@ GLuint CompositionPrograms::program(CompositeKind kind) const {
   if (const GLuint exact = graphics_.programs().ready(own.program)) {
     return exact;
   }
-  const bool mayLoop = own.key.layers().size() <= loopLayers && (loopsMeanwhile_ || hasOwnFailed(kind));
-  return mayLoop ? graphics_.programs().ready(loop_) : 0;
+  return mayLoop(own) ? graphics_.programs().ready(loop_) : 0;
 }
 
 bool CompositionPrograms::isOwnReady(CompositeKind kind) const {
@@ -172,21 +155,24 @@ bool CompositionPrograms::isOwnReady(CompositeKind kind) const {
   return halfSize() != 0 && graphics_.programs().ready(own.program) != 0;
 }
 
-bool CompositionPrograms::hasOwnFailed(CompositeKind kind) const {
+bool CompositionPrograms::isOwnPending(CompositeKind kind) const {
   const Kind& own = kinds_[static_cast<std::size_t>(kind)];
-  return own.program && !graphics_.programs().get(own.program);
+  return !isOwnReady(kind) && !graphics_.programs().hasFailed(own.program);
 }
 
-std::string CompositionPrograms::error() const {
-  for (const graphics::ProgramHandle* handle :
-       {&halfSize_, &loop_, &kinds_[0].program, &kinds_[1].program, &kinds_[2].program}) {
-    if (*handle) {
-      if (const Result<GLuint> built = graphics_.programs().get(*handle); !built) {
-        return built.error().message();
-      }
-    }
+bool CompositionPrograms::hasFailed(CompositeKind kind) const {
+  const graphics::ProgramCache& cache = graphics_.programs();
+  const Kind& own = kinds_[static_cast<std::size_t>(kind)];
+  return cache.hasFailed(halfSize_) || (cache.hasFailed(own.program) && (!mayLoop(own) || cache.hasFailed(loop_)));
+}
+
+std::string CompositionPrograms::error(CompositeKind kind) const {
+  if (!hasFailed(kind)) {
+    return {};
   }
-  return {};
+  const graphics::ProgramCache& cache = graphics_.programs();
+  const Kind& own = kinds_[static_cast<std::size_t>(kind)];
+  return cache.get(cache.hasFailed(halfSize_) ? halfSize_ : own.program).error().message();
 }
 
 }  // namespace meridian::globebrowsing

@@ -36,9 +36,10 @@ struct PlacementHead {
 static_assert(sizeof(PlacementHead) == 32);
 }  // namespace composition_bindings
 
-/// The programs that compose. For each structure key one is generated and built in the background; until it is ready
-/// one that loops over the layers at run time composes, if that is worth while, or else nothing does and what was
-/// composed before is drawn. Settings are uniforms and never recompile. Owned by Composer. Render thread only.
+/// The programs that compose. For each structure key one is generated and built in the background. Until it is ready
+/// one that loops over the layers at run time composes, but not with a software renderer: that runs all branches, and
+/// takes longer for a composite (120 ms for three layers; their own program 8) than a frame may, while the own program
+/// is there in about half a second. Settings are uniforms and never recompile. Owned by Composer. Render thread only.
 class CompositionPrograms {
  public:
   /// As many layers as the looping program takes; more wait for the program of their own.
@@ -48,23 +49,23 @@ class CompositionPrograms {
 
   /// Once, before all else: asks for those that do not depend on layers. Errors: shader templates missing or wrong.
   Result<void> request();
-  /// Whether the looping program composes while a structure's own is being built. Unless told, not by software: its
-  /// branches cost whether taken or not, and one composite of three layers takes longer than a frame may (120 ms, its
-  /// own program 8), while the own program is there in half a second. One that cannot be built is stood in for anyway.
-  void loopMeanwhile(bool loops);
+  /// Whether the looping program may stand in, instead of what the renderer suggests.
+  void setLooping(bool loops);
   /// Asks for the program of that kind's structure. Cheap when nothing changed.
   void setStructure(CompositeKind kind, const StructureKey& key);
 
-  /// The structure's own, or the looping one where that may stand in; 0 while none is ready.
+  /// The structure's own, or the looping one if that may stand in; 0 while none is ready.
   [[nodiscard]] GLuint program(CompositeKind kind) const;
   /// Draws a half-size level; 0 while it is not ready, and then so are all others.
   [[nodiscard]] GLuint halfSize() const { return graphics_.programs().ready(halfSize_); }
   /// Whether the structure's own program is ready.
   [[nodiscard]] bool isOwnReady(CompositeKind kind) const;
-  /// Whether it cannot be built; the looping one then stays.
-  [[nodiscard]] bool hasOwnFailed(CompositeKind kind) const;
-  /// The compiler's complaint about a program that cannot be built, else empty.
-  [[nodiscard]] std::string error() const;
+  /// Whether it is being built.
+  [[nodiscard]] bool isOwnPending(CompositeKind kind) const;
+  /// Whether nothing composes that kind, nor ever will: programs cannot be built.
+  [[nodiscard]] bool hasFailed(CompositeKind kind) const;
+  /// Then the compiler's complaint, else empty.
+  [[nodiscard]] std::string error(CompositeKind kind) const;
 
  private:
   struct Kind {
@@ -75,13 +76,14 @@ class CompositionPrograms {
 
   [[nodiscard]] Result<graphics::ProgramDescription> describe(std::string key, std::size_t layers,
                                                               std::string body) const;
-  [[nodiscard]] Result<graphics::ProgramDescription> describeLoop() const;
-  void requestLoop();
+  /// Whether the looping program may compose that kind.
+  [[nodiscard]] bool mayLoop(const Kind& kind) const { return loops_ && kind.key.layers().size() <= loopLayers; }
 
   graphics::Graphics& graphics_;
-  bool loopsMeanwhile_;
+  bool loops_;
   std::array<Kind, compositeKindCount> kinds_;
-  graphics::ProgramHandle loop_;
+  graphics::ProgramDescription loopDescription_;
+  graphics::ProgramHandle loop_;  ///< empty until it may be needed
   graphics::ProgramHandle halfSize_;
 };
 

@@ -104,7 +104,8 @@ bool ChunkPrograms::isReady(const Set& set) const {
   });
 }
 
-Result<graphics::ProgramHandle> ChunkPrograms::request(ChunkProgramKey key, const ChunkProgramUse& use) {
+Result<graphics::ProgramHandle> ChunkPrograms::request(ChunkProgramKey key, const ChunkProgramUse& use,
+                                                       Urgency urgency) {
   key.night = key.night && use.night;
   if (!use.fades || (key.fade == CompositeKind::Night && !key.night)) {
     key.fade.reset();
@@ -119,15 +120,15 @@ Result<graphics::ProgramHandle> ChunkPrograms::request(ChunkProgramKey key, cons
     return tl::make_unexpected(fragment.error());
   }
   const auto warm = [blended = key.blended](GLuint program) { warmChunks(program, blended); };
-  return graphics_.programs().request({key.text(), *std::move(vertex), *std::move(fragment), warm});
+  return graphics_.programs().request({key.text(), *std::move(vertex), *std::move(fragment), warm}, urgency);
 }
 
-Result<ChunkPrograms::Set> ChunkPrograms::requestAll(const ChunkProgramKey& key) {
+Result<ChunkPrograms::Set> ChunkPrograms::requestAll(const ChunkProgramKey& key, Urgency urgency) {
   Set set{key, {}};
   for (const bool fades : {false, true}) {
     for (const bool night : {true, false}) {
       const ChunkProgramUse use{night, fades};
-      Result<graphics::ProgramHandle> program = request(key, use);
+      Result<graphics::ProgramHandle> program = request(key, use, urgency);
       if (!program) {
         return tl::make_unexpected(program.error());
       }
@@ -139,7 +140,7 @@ Result<ChunkPrograms::Set> ChunkPrograms::requestAll(const ChunkProgramKey& key)
 
 Result<void> ChunkPrograms::set(const ChunkProgramKey& key) {
   if (!wanted_.programs.front() || !(key == wanted_.key)) {
-    Result<Set> set = requestAll(key);
+    Result<Set> set = requestAll(key, Urgency::Now);
     if (!set) {
       return tl::make_unexpected(set.error());
     }
@@ -161,7 +162,7 @@ void ChunkPrograms::prepareFades() {
     key.fade = kind;
     if (isInUse) {
       // The same templates made the programs that draw, so there is no error.
-      prepared_.push_back(requestAll(key).value_or(Set{}));
+      prepared_.push_back(requestAll(key, Urgency::Later).value_or(Set{}));
     }
   }
 }

@@ -81,8 +81,10 @@ class ChunkPrograms {
     return key;
   }
   [[nodiscard]] bool isReady(const Set& set) const;
-  [[nodiscard]] Result<Set> requestAll(const ChunkProgramKey& key);
-  [[nodiscard]] Result<graphics::ProgramHandle> request(ChunkProgramKey key, const ChunkProgramUse& use);
+  using Urgency = graphics::ProgramCache::Urgency;
+  [[nodiscard]] Result<Set> requestAll(const ChunkProgramKey& key, Urgency urgency);
+  [[nodiscard]] Result<graphics::ProgramHandle> request(ChunkProgramKey key, const ChunkProgramUse& use,
+                                                        Urgency urgency);
 
   graphics::Graphics& graphics_;
   Set wanted_;

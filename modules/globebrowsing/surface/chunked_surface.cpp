@@ -109,11 +109,8 @@ Settled ChunkedSurface::settled(std::size_t /*view*/) const {
   if (!renderer_.programs().ready()) {
     return {false, "the program that draws chunks is being built"};
   }
-  if (const CompositionPrograms& programs = tiles_->composites().composer().programs();
-      programs.program(CompositeKind::Base) == 0) {
-    if (std::string error = programs.error(); !error.empty()) {
-      return {true, std::move(error)};
-    }
+  if (std::string error = tiles_->composites().composer().programs().error(CompositeKind::Base); !error.empty()) {
+    return {true, std::move(error)};
   }
   if (std::string reason = tiles_->waitingFor(); !reason.empty()) {
     return {false, std::move(reason)};

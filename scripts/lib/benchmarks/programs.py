@@ -21,11 +21,11 @@ class Failed(Exception):
     """A benchmark that gives no figure, and why."""
 
 
-def run(program, *arguments, stdin="", environment=None, timeout=1800):
+def run(program, *arguments, stdin="", environment=None, timeout=1800, remedy="build it"):
     """Runs a program of the build with that text to read; its standard output."""
     path = BIN / program
     if not path.exists():
-        raise Failed(f"build/release/bin/{program}: no such program")
+        raise Failed(f"build/release/bin/{program}: no such program; {remedy}")
     try:
         done = subprocess.run([path, *map(str, arguments)], env=environment, timeout=timeout, text=True,
                               input=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE)

@@ -12,6 +12,7 @@ class Benchmark:
     sense: str
     limit: float
     long: bool
+    needs: tuple  # groups of packages.txt, beside those that make-ready installs
     meaning: str  # one sentence
     measure: Callable[[], float]
 
@@ -26,11 +27,11 @@ class Benchmark:
 BENCHMARKS = {}
 
 
-def benchmark(name, unit, sense, limit, long=False):
+def benchmark(name, unit, sense, limit, long=False, needs=()):
     """Registers a function that returns the figure or raises Failed. Its docstring says what the figure is."""
     def register(function):
         assert name not in BENCHMARKS, name
         meaning = " ".join((function.__doc__ or "").split())
-        BENCHMARKS[name] = Benchmark(name, unit, sense, limit, long, meaning, function)
+        BENCHMARKS[name] = Benchmark(name, unit, sense, limit, long, needs, meaning, function)
         return function
     return register

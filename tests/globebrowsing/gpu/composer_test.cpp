@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <future>
 #include <random>
 #include <string>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 
 #include "globebrowsing/layers/blend.h"
 #include "globebrowsing/layers/layer_manager.h"
@@ -54,10 +59,13 @@ class ComposerTest : public GpuTest {
     return added ? *added : nullptr;
   }
 
-  std::shared_ptr<const ColourTile> randomTile() {
+  std::shared_ptr<const ColourTile> randomTile(bool opaque = false) {
     ColourPixels pixels{side, {}, true, false};
     pixels.rgba.resize(Composer::bytesPerRawTile());
     std::generate(pixels.rgba.begin(), pixels.rgba.end(), [&] { return static_cast<std::uint8_t>(random_()); });
+    for (std::size_t alpha = 3; opaque && alpha < pixels.rgba.size(); alpha += 4) {
+      pixels.rgba[alpha] = 255;
+    }
     return std::make_shared<const ColourTile>(std::move(pixels));
   }
 
@@ -80,7 +88,8 @@ class ComposerTest : public GpuTest {
     composer_->programs().setStructure(CompositeKind::Base, manager_.group(LayerGroupId::ColorLayers).structureKey());
     if (wait) {
       graphics_->programs().waitAll();
-      ASSERT_TRUE(composer_->programs().isOwnReady(CompositeKind::Base)) << composer_->programs().error();
+      ASSERT_TRUE(composer_->programs().isOwnReady(CompositeKind::Base))
+          << composer_->programs().error(CompositeKind::Base);
     }
   }
   CompositionPart part(const Layer* layer, const ColourTile* tile, UnitSquareTransform transform = {}) {
@@ -105,9 +114,10 @@ class ComposerTest : public GpuTest {
 class HeldBuilder {
  public:
   explicit HeldBuilder(graphics::ProgramCache& programs)
-      : handle_(programs.request({"held", source("void main() { gl_Position = vec4(0.0); }\n", "held.vert"),
-                                  source("void main() {}\n", "held.frag"),
-                                  [ended = end_.get_future().share()](GLuint) { ended.wait(); }})) {}
+      : handle_(programs.request(
+            {fmt::format("held {}", ++count), source("void main() { gl_Position = vec4(0.0); }\n", "held.vert"),
+             source("void main() {}\n", "held.frag"), [ended = end_.get_future().share()](GLuint) { ended.wait(); }})) {
+  }
   HeldBuilder(const HeldBuilder&) = delete;
   HeldBuilder& operator=(const HeldBuilder&) = delete;
   ~HeldBuilder() { end_.set_value(); }
@@ -117,6 +127,7 @@ class HeldBuilder {
     return {"#version 450 core\n" + body, {name}};
   }
 
+  static inline int count = 0;  // a known key would hold nothing
   std::promise<void> end_;
   graphics::ProgramHandle handle_;
 };
@@ -191,13 +202,9 @@ TEST_F(ComposerTest, ALayerThatHidesAllOthersIsWhatBlendingItGives) {
   Layer* upper = addTileLayer();
   useStructure();
   const auto lowerTile = randomTile();
-  ColourPixels opaque = randomTile()->pixels();
-  for (std::size_t alpha = 3; alpha < opaque.rgba.size(); alpha += 4) {
-    opaque.rgba[alpha] = 255;
-  }
-  const ColourTile upperTile(std::move(opaque));
-  ASSERT_TRUE(upperTile.isOpaque());
-  std::vector<CompositionPart> parts{part(lower, lowerTile.get()), part(upper, &upperTile)};
+  const auto upperTile = randomTile(true);
+  ASSERT_TRUE(upperTile->isOpaque());
+  std::vector<CompositionPart> parts{part(lower, lowerTile.get()), part(upper, upperTile.get())};
   const double asOne = composer_->estimatedMilliseconds(parts);
   ASSERT_TRUE(compose(1, parts));
   // So little less than 1 that no byte shows it, but then it is blended.
@@ -227,7 +234,7 @@ TEST_F(ComposerTest, TheLoopingProgramDrawsWhatTheUnrolledOneDoes) {
   const auto upperTile = randomTile();
   const std::vector<CompositionPart> parts{part(lower, lowerTile.get()), part(solid, nullptr),
                                            part(upper, upperTile.get())};
-  composer_->programs().loopMeanwhile(true);
+  composer_->programs().setLooping(true);
   graphics_->programs().waitAll();
   std::vector<std::uint8_t> looped;
   {
@@ -250,7 +257,7 @@ TEST_F(ComposerTest, TheLoopingProgramDrawsWhatTheUnrolledOneDoes) {
 
 TEST_F(ComposerTest, TheLoopingProgramStandsInOnlyWhereItMay) {
   for (const bool loops : {true, false}) {
-    composer_->programs().loopMeanwhile(loops);
+    composer_->programs().setLooping(loops);
     graphics_->programs().waitAll();
     addSolidLayer({0.1, 0.2, 0.3});
     const HeldBuilder held(graphics_->programs());
@@ -258,6 +265,55 @@ TEST_F(ComposerTest, TheLoopingProgramStandsInOnlyWhereItMay) {
     ASSERT_FALSE(composer_->programs().isOwnReady(CompositeKind::Base));
     EXPECT_EQ(composer_->programs().program(CompositeKind::Base) != 0, loops);
   }
+}
+
+TEST_F(ComposerTest, WhatNeedsNoBlendingWaitsForNoProgram) {
+  Layer* lower = addTileLayer();
+  Layer* upper = addTileLayer();
+  const auto tile = randomTile();
+  const auto hiding = randomTile(true);
+  const std::vector<CompositionPart> blended{part(lower, hiding.get()), part(upper, tile.get())};
+  const std::vector<CompositionPart> hidden{part(lower, tile.get()), part(upper, hiding.get())};
+  composer_->programs().setLooping(false);
+  {
+    const HeldBuilder held(graphics_->programs());
+    useStructure(false);
+    EXPECT_TRUE(composer_->programs().isOwnPending(CompositeKind::Base));
+    EXPECT_FALSE(composer_->canCompose(CompositeKind::Base, blended));
+    ASSERT_TRUE(composer_->canCompose(CompositeKind::Base, hidden));
+    ASSERT_TRUE(compose(0, hidden));
+    EXPECT_EQ(read(0), hiding->pixels().rgba);
+  }
+  useStructure();
+  EXPECT_FALSE(composer_->programs().isOwnPending(CompositeKind::Base));
+  EXPECT_TRUE(composer_->canCompose(CompositeKind::Base, blended));
+}
+
+TEST_F(ComposerTest, AProgramThatCannotBeBuiltIsTold) {
+  const std::filesystem::path folder = std::filesystem::path(MERIDIAN_TEST_FOLDER) / "broken shaders";
+  std::filesystem::remove_all(folder);
+  std::filesystem::copy(paths_.shaders, folder, std::filesystem::copy_options::recursive);
+  std::ofstream(folder / "gpu" / "compose.frag", std::ios::app) << "broken\n";
+  paths_.shaders = folder;
+  composer_.reset();
+  graphics_.reset();
+  auto graphics = graphics::Graphics::create(*context_, paths_, statistics_);
+  ASSERT_TRUE(graphics) << graphics.error().message();
+  graphics_ = std::move(*graphics);
+  auto made = Composer::create(*graphics_, {4, 8});
+  ASSERT_TRUE(made) << made.error().message();
+  composer_ = std::move(*made);
+  const CompositionPrograms& programs = composer_->programs();
+  addTileLayer();
+  composer_->programs().setStructure(CompositeKind::Base, manager_.group(LayerGroupId::ColorLayers).structureKey());
+  EXPECT_FALSE(programs.hasFailed(CompositeKind::Base));
+  EXPECT_TRUE(programs.error(CompositeKind::Base).empty());
+  graphics_->programs().waitAll();
+  EXPECT_TRUE(programs.hasFailed(CompositeKind::Base));
+  EXPECT_FALSE(programs.isOwnPending(CompositeKind::Base));
+  EXPECT_EQ(programs.program(CompositeKind::Base), 0U);
+  EXPECT_THAT(programs.error(CompositeKind::Base), testing::HasSubstr("compose.frag"));
+  EXPECT_FALSE(programs.hasFailed(CompositeKind::Night)) << "nobody asked for it";
 }
 
 TEST_F(ComposerTest, HalfSizesAreTheMeansOfFourTexels) {

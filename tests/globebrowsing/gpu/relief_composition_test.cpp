@@ -50,7 +50,8 @@ class ReliefCompositionTest : public GpuTest {
     EXPECT_TRUE(added) << (added ? "" : added.error().message());
     composer_->programs().setStructure(CompositeKind::Overlay, manager_.group(LayerGroupId::Overlays).structureKey());
     graphics_->programs().waitAll();
-    EXPECT_TRUE(composer_->programs().isOwnReady(CompositeKind::Overlay)) << composer_->programs().error();
+    EXPECT_TRUE(composer_->programs().isOwnReady(CompositeKind::Overlay))
+        << composer_->programs().error(CompositeKind::Overlay);
     CompositionPart part;
     part.layer = *added;
     part.relief = tile_.get();
@@ -197,7 +198,7 @@ TEST_F(ReliefCompositionTest, IsolinesAreWhereHeightsAreMultiplesOfTheInterval) 
 
 TEST_F(ReliefCompositionTest, TheLoopingProgramDrawsThemToo) {
   const std::vector<std::uint8_t> own = compose({{"Type", "Hillshade"}});
-  composer_->programs().loopMeanwhile(true);
+  composer_->programs().setLooping(true);
   graphics_->programs().waitAll();
   // Enabled layers of more kinds than any program has been made for.
   const auto added = manager_.addLayer(

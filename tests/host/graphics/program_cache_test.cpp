@@ -229,6 +229,30 @@ TEST_F(Programs, ThatNobodyWantsAnyMoreAreNotBuilt) {
   EXPECT_EQ(statistics_.programs.built, 2U);
 }
 
+TEST_F(Programs, AskedForLaterAreBuiltAfterTheOthers) {
+  std::promise<void> goOn;
+  std::vector<std::string> order;  // the builder's until waitAll() returns
+  const auto noted = [&order](int red) {
+    ProgramDescription description = flat(red);
+    description.warmUp = [&order, key = description.key](GLuint) {
+      if (order.empty() || order.back() != key) {  // one that compiled something is drawn with twice
+        order.push_back(key);
+      }
+    };
+    return description;
+  };
+  ProgramDescription slow = flat(63);
+  slow.warmUp = [ended = goOn.get_future().share()](GLuint) { ended.wait(); };
+  using enum ProgramCache::Urgency;
+  const std::vector<ProgramHandle> handles{cache_->request(std::move(slow)),  cache_->request(noted(64), Later),
+                                           cache_->request(noted(65), Later), cache_->request(noted(66)),
+                                           cache_->request(noted(67), Later), cache_->request(noted(67)),
+                                           cache_->request(noted(66), Later)};
+  goOn.set_value();
+  cache_->waitAll();
+  EXPECT_EQ(order, (std::vector<std::string>{"flat 66", "flat 67", "flat 64", "flat 65"}));
+}
+
 TEST_F(Programs, CountFramesThatWaited) {
   ASSERT_TRUE(cache_->buildNow(flat(70)).has_value());
   EXPECT_EQ(statistics_.programs.framesWaited, 0U) << "before the first frame nobody waits";
