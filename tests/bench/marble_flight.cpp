@@ -36,6 +36,17 @@ void setUp(Marble::MarbleMap& map) {
   map.setMapThemeId("earth/bluemarble/bluemarble.dgml");
   map.setMapQualityForViewContext(Marble::NormalQuality, Marble::Still);
   map.setViewContext(Marble::Still);
+  map.setShowPlaces(false);
+  map.setShowCities(false);
+  map.setShowTerrain(false);
+  map.setShowOtherPlaces(false);
+  map.setShowIceLayer(false);
+  map.setShowBorders(false);
+  map.setShowRivers(false);
+  map.setShowLakes(false);
+  map.setShowClouds(false);
+  map.setShowSunShading(false);
+  map.setShowCityLights(false);
   for (Marble::RenderPlugin* plugin : map.renderPlugins()) {
     plugin->setEnabled(false);
   }
