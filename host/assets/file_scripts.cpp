@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <utility>
@@ -287,7 +288,7 @@ ScriptResult createSingleColourImage(const Files& files, Arguments a) {
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
   stream << "P6 1 1 255\n";
   for (const double share : *colour) {
-    stream.put(static_cast<char>(static_cast<unsigned char>(std::clamp(share, 0.0, 1.0) * 255.0 + 0.5)));
+    stream.put(static_cast<char>(static_cast<unsigned char>(std::lround(std::clamp(share, 0.0, 1.0) * 255.0))));
   }
   if (!stream.flush()) {
     return failure("the picture cannot be written", file.string());

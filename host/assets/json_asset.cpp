@@ -34,7 +34,7 @@ Result<std::string> nodes(const Value& list, const std::string& where) {
     }
     lua += fmt::format("local node{} = {}\nasset.export(node{})\n", i, node.toLua(), i);
     added += fmt::format("openspace.addSceneGraphNode(node{}) ", i);
-    removed = fmt::format("openspace.removeSceneGraphNode(node{}) ", i) + removed;
+    removed.insert(0, fmt::format("openspace.removeSceneGraphNode(node{}) ", i));
   }
   return lua +
          fmt::format("asset.onInitialize(function() {}end)\nasset.onDeinitialize(function() {}end)\n", added, removed);
@@ -76,9 +76,9 @@ Result<std::string> luaFromJsonAsset(std::string_view text, const std::string& w
           fmt::format("expected {}, found {}", key == "metadata" ? "an object" : "an array", kindName(value->kind())),
           fmt::format("{}: {}", where, key));
     }
-    const Result<std::string> part = key == "metadata"       ? Result<std::string>(metadata(*value))
-                                     : key == "dependencies" ? requirements(*value, where)
-                                                             : nodes(*value, where);
+    Result<std::string> part = key == "metadata"       ? Result<std::string>(metadata(*value))
+                               : key == "dependencies" ? requirements(*value, where)
+                                                       : nodes(*value, where);
     if (!part) {
       return part;
     }

@@ -182,7 +182,7 @@ class ProfileReader {
       const Value* panels = root.find(key);
       for (const auto& [panel, shown] : panels != nullptr ? panels->table()->fields : Table().fields) {
         if (!shown.boolean()) {
-          complain("expected true or false", key + '.' + panel);
+          complain("expected true or false", fmt::format("{}.{}", key, panel));
         }
       }
     }

@@ -37,7 +37,7 @@ Result<std::vector<fs::path>> findAssets(const fs::path& path) {
 
 fs::path assetsFolder(const fs::path& path, const fs::path& fallback) {
   std::error_code ignored;
-  const fs::path whole = fs::absolute(path, ignored).lexically_normal();
+  fs::path whole = fs::absolute(path, ignored).lexically_normal();
   if (fs::is_directory(whole, ignored)) {
     return whole;
   }

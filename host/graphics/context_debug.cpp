@@ -17,11 +17,9 @@ void APIENTRY logMessage(GLenum source, GLenum type, GLuint id, GLenum severity,
   // Mesa reports every variant it compiles, and compilers' errors reach people as an Error already.
   const bool chatter =
       source == GL_DEBUG_SOURCE_SHADER_COMPILER || type == GL_DEBUG_TYPE_PERFORMANCE || type == GL_DEBUG_TYPE_OTHER;
-  if (chatter) {
-    log::debug("OpenGL {}: {}", id, text);
-  } else if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH) {
+  if (!chatter && (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH)) {
     log::error("OpenGL {}: {}", id, text);
-  } else if (severity == GL_DEBUG_SEVERITY_MEDIUM) {
+  } else if (!chatter && severity == GL_DEBUG_SEVERITY_MEDIUM) {
     log::warning("OpenGL {}: {}", id, text);
   } else {
     log::debug("OpenGL {}: {}", id, text);

@@ -12,10 +12,10 @@ namespace {
 
 using Type = Schema::Type;
 
-std::string textOr(const Value* table, std::string_view key, std::string otherwise) {
+std::string textOr(const Value* table, std::string_view key, std::string_view otherwise) {
   const Value* value = table != nullptr ? table->find(key) : nullptr;
   const std::string* text = value != nullptr ? value->string() : nullptr;
-  return text != nullptr ? *text : std::move(otherwise);
+  return text != nullptr ? *text : std::string(otherwise);
 }
 
 std::vector<std::string> tagsOf(const Value& table) {

@@ -87,13 +87,13 @@ class LuaPattern::Parser {
  private:
   [[nodiscard]] unsigned char next() { return static_cast<unsigned char>(text_[at_++]); }
   [[nodiscard]] bool nextIs(char c) const { return at_ < text_.size() && text_[at_] == c; }
-  void add(Item item) { pattern_.items_.push_back(std::move(item)); }
+  void add(const Item& item) { pattern_.items_.push_back(item); }
   void addCapture(Kind kind, std::size_t capture) {
     ++depth_;
     Item item;
     item.kind = kind;
     item.capture = capture;
-    add(std::move(item));
+    add(item);
   }
 
   Result<void> parseItem() {
@@ -113,7 +113,7 @@ class LuaPattern::Parser {
       ++at_;
       Item item;
       item.kind = Kind::EndOfText;
-      add(std::move(item));
+      add(item);
       return {};
     }
     if (nextIs('%') && at_ + 1 < text_.size()) {
@@ -156,7 +156,7 @@ class LuaPattern::Parser {
     item.kind = Kind::Balanced;
     item.first = next();
     item.last = next();
-    add(std::move(item));
+    add(item);
     return {};
   }
 
@@ -169,7 +169,7 @@ class LuaPattern::Parser {
       Item item;
       item.kind = Kind::Frontier;
       item.characters = characters;
-      add(std::move(item));
+      add(item);
     });
   }
 
@@ -183,7 +183,7 @@ class LuaPattern::Parser {
     Item item;
     item.kind = Kind::Reference;
     item.capture = number - 1;
-    add(std::move(item));
+    add(item);
     return {};
   }
 
@@ -199,7 +199,7 @@ class LuaPattern::Parser {
         ++depth_;
         item.kind = kinds[suffix];
       }
-      add(std::move(item));
+      add(item);
     });
   }
 

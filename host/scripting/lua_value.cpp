@@ -102,7 +102,7 @@ class Reader {
         return failure(fmt::format("{} has a {} as a key", path.empty() ? "the table" : path, lua_typename(lua_, type)),
                        {}, "use strings or numbers");
       }
-      Result<Value> item = readEntry(path.empty() ? key : path + '.' + key);
+      Result<Value> item = readEntry(path.empty() ? key : fmt::format("{}.{}", path, key));
       if (!item) {
         return tl::make_unexpected(item.error());
       }

@@ -97,8 +97,11 @@ Result<Change> changeFrom(Arguments arguments) {
 std::vector<Property*> takers(PropertyIndex& index, const PropertyPattern& pattern, const Value& value) {
   std::vector<Property*> properties = index.match(pattern);
   std::erase_if(properties, [&](const Property* property) {
+    if (!property->accepts(value)) {
+      return true;
+    }
     const bool isButton = dynamic_cast<const TriggerProperty*>(property) != nullptr;
-    return !property->accepts(value) || (isButton && !pattern.isExact() && !value.isNil());
+    return isButton && !pattern.isExact() && !value.isNil();
   });
   return properties;
 }

@@ -56,7 +56,7 @@ void pushText(lua_State* lua, std::string_view text) {
 
 void pushCapture(lua_State* lua, std::string_view text, const LuaPattern::Capture& capture) {
   if (capture.isPosition) {
-    lua_pushinteger(lua, static_cast<lua_Integer>(capture.begin + 1));
+    lua_pushinteger(lua, static_cast<lua_Integer>(capture.begin) + 1);
   } else {
     pushText(lua, text.substr(capture.begin, capture.length));
   }
@@ -130,7 +130,7 @@ int findOrMatch(lua_State* lua, bool find) {
   if (!find) {
     return pushCaptures(lua, text, match, true);
   }
-  lua_pushinteger(lua, static_cast<lua_Integer>(match.begin + 1));
+  lua_pushinteger(lua, static_cast<lua_Integer>(match.begin) + 1);
   lua_pushinteger(lua, static_cast<lua_Integer>(match.end));
   return 2 + pushCaptures(lua, text, match, false);
 }

@@ -65,7 +65,7 @@ Result<Time> movedOnCalendar(Time base, double months) {
 std::string asSpiceWritesIt(Time time) {
   static constexpr std::array<std::string_view, 12> months{"JAN", "FEB", "MAR", "APR", "MAY", "JUN",
                                                            "JUL", "AUG", "SEP", "OCT", "NOV", "DEC"};
-  const std::string utc = time.utc();
+  std::string utc = time.utc();
   const std::size_t day = utc.find('T');
   if (day == std::string::npos || day < 8) {
     return utc;

@@ -24,6 +24,7 @@ Result<LayerGroup*> groupOf(RenderableGlobe& globe, const Value& group) {
       return &globe.layers().group(named->group);
     }
     std::vector<std::string_view> names;
+    names.reserve(allLayerGroups.size());
     for (const LayerGroupId id : allLayerGroups) {
       names.push_back(name(id));
     }

@@ -12,13 +12,16 @@ namespace {
 
 constexpr int cells = 8;
 constexpr int side = cells + 1;
+constexpr std::size_t pointCount = std::size_t{side} * side;
 constexpr double cellsSquared = cells * cells;
 
 struct Samples {
-  std::array<glm::dvec3, side * side> points;  ///< on the ellipsoid
-  std::array<glm::dvec3, side * side> normals;
+  std::array<glm::dvec3, pointCount> points;  ///< on the ellipsoid
+  std::array<glm::dvec3, pointCount> normals;
 
-  [[nodiscard]] static std::size_t at(int column, int row) { return static_cast<std::size_t>(row * side + column); }
+  [[nodiscard]] static std::size_t at(int column, int row) {
+    return static_cast<std::size_t>(row) * side + static_cast<std::size_t>(column);
+  }
 };
 
 Samples sample(const Tiling& tiling, const TileIndex& index) {

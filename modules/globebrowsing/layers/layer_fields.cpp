@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -17,22 +18,28 @@ namespace meridian::globebrowsing {
 namespace {
 
 template <class T>
-inline constexpr GlslType glslTypeOf = GlslType::Int;
-template <>
-inline constexpr GlslType glslTypeOf<float> = GlslType::Float;
-template <>
-inline constexpr GlslType glslTypeOf<glm::vec2> = GlslType::Vec2;
-template <>
-inline constexpr GlslType glslTypeOf<glm::vec3> = GlslType::Vec3;
-template <>
-inline constexpr GlslType glslTypeOf<glm::vec4> = GlslType::Vec4;
+constexpr std::optional<GlslType> glslTypeOf() {
+  if constexpr (std::is_same_v<T, std::int32_t>) {
+    return GlslType::Int;
+  } else if constexpr (std::is_same_v<T, float>) {
+    return GlslType::Float;
+  } else if constexpr (std::is_same_v<T, glm::vec2>) {
+    return GlslType::Vec2;
+  } else if constexpr (std::is_same_v<T, glm::vec3>) {
+    return GlslType::Vec3;
+  } else if constexpr (std::is_same_v<T, glm::vec4>) {
+    return GlslType::Vec4;
+  }
+  return std::nullopt;
+}
 
 /// A field whose GLSL type is that of what `Read`, a function without captures, returns.
 template <class Read>
 LayerField field(std::string name, Read /*read*/) {
   using T = std::invoke_result_t<Read, const Layer&>;
-  static_assert(std::is_same_v<T, std::int32_t> || glslTypeOf<T> != GlslType::Int, "no GLSL type for this field");
-  return {std::move(name), glslTypeOf<T>, [](const Layer& layer, std::byte* to) {
+  constexpr std::optional<GlslType> type = glslTypeOf<T>();
+  static_assert(type, "no GLSL type for this field");
+  return {std::move(name), *type, [](const Layer& layer, std::byte* to) {
             const T value = Read{}(layer);
             std::memcpy(to, &value, sizeof(value));
           }};

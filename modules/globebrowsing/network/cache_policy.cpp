@@ -171,7 +171,7 @@ HeaderFields relevantFields(const HeaderFields& fields) {
   HeaderFields relevant;
   for (const auto& [name, value] : fields.all()) {
     if (std::any_of(names.begin(), names.end(),
-                    [&](std::string_view known) { return equalIgnoringCase(known, name); })) {
+                    [&name = name](std::string_view known) { return equalIgnoringCase(known, name); })) {
       relevant.add(name, value);
     }
   }

@@ -61,7 +61,7 @@ std::string HeaderFields::list(std::string_view name) const {
 std::string HeaderFields::text() const {
   std::string lines;
   for (const auto& [name, value] : fields_) {
-    lines += name + ": " + value + '\n';
+    lines.append(name).append(": ").append(value).append("\n");
   }
   return lines;
 }

@@ -161,7 +161,7 @@ bool DefaultTileProvider::prepareData(const std::function<void()>& wake) {
 }
 
 Result<void> DefaultTileProvider::openData() {
-  const Result<void> opened =
+  Result<void> opened =
       check().and_then([this] { return openSource(); }).map([this](std::shared_ptr<PixelSource> source) {
         source_ = std::move(source);
       });

@@ -190,7 +190,7 @@ Result<Pixels> TileProviderByIndex::compose(const Target& target, Make make) con
     if (!isShown(cells_[i], target.tiling, target.index)) {
       continue;
     }
-    const Result<Pixels> part = make(i + 1);
+    Result<Pixels> part = make(i + 1);
     if (!part) {
       return part;
     }

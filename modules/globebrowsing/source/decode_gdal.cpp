@@ -102,12 +102,13 @@ Result<DecodedImage> decodeByGdal(std::span<const std::uint8_t> bytes, const std
   const int width = (*dataset)->GetRasterXSize();
   const int height = (*dataset)->GetRasterYSize();
   const int bands = (*dataset)->GetRasterCount();
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   const bool isWide = (*dataset)->GetRasterBand(1)->GetRasterDataType() == GDT_UInt16;
-  DecodedImage image{{width, height, ByteVector(std::size_t{4} * width * height, 255)}, bands == 2 || bands >= 4};
+  DecodedImage image{{width, height, ByteVector(4 * pixels, 255)}, bands == 2 || bands >= 4};
   // Where each of R, G, B, A comes from: grey serves all three.
   const bool isColour = bands >= 3;
   const std::array<int, 4> sources{1, isColour ? 2 : 1, isColour ? 3 : 1, bands == 2 ? 2 : bands >= 4 ? 4 : 0};
-  std::vector<std::uint16_t> wide(isWide ? static_cast<std::size_t>(width) * height : 0);
+  std::vector<std::uint16_t> wide(isWide ? pixels : 0);
   for (std::size_t channel = 0; channel < sources.size(); ++channel) {
     if (sources[channel] == 0) {
       continue;

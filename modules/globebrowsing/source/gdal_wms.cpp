@@ -21,7 +21,7 @@ constexpr std::int64_t largestRaster = 2147483647;  // GDAL's
 /// The element's number, `otherwise` when there is no such element, an error for anything else.
 template <class Read>
 auto valueOf(const XmlDocument& document, const pugi::xml_node& parent, std::string_view name, Read read,
-             decltype(*read("")) otherwise) -> Result<std::remove_cvref_t<decltype(*read(""))>> {
+             std::remove_cvref_t<decltype(*read(""))> otherwise) -> Result<decltype(otherwise)> {
   const pugi::xml_node node = child(parent, name);
   if (!node || text(node).empty()) {
     return otherwise;
@@ -39,14 +39,14 @@ class WindowReader {
 
   void real(const pugi::xml_node& parent, std::string_view name, double& value) {
     keep(valueOf(
-             document_, parent, name, [](std::string_view t) { return number(t); }, std::move(value)),
+             document_, parent, name, [](std::string_view t) { return number(t); }, value),
          value);
   }
   template <class Integer>
   void whole(const pugi::xml_node& parent, std::string_view name, Integer& value) {
     long long wide = static_cast<long long>(value);
     keep(valueOf(
-             document_, parent, name, [](std::string_view t) { return integer(t); }, std::move(wide)),
+             document_, parent, name, [](std::string_view t) { return integer(t); }, wide),
          wide);
     value = static_cast<Integer>(std::clamp<long long>(wide, -largestRaster, largestRaster));
   }
@@ -160,8 +160,8 @@ std::vector<TileMatrix> matricesOf(const GdalWindow& window, const GdalMiniDrive
   std::vector<TileMatrix> matrices;
   for (int step = 0; step <= window.overviews; ++step) {
     const double scale = std::ldexp(1.0, -step);
-    const auto width = static_cast<std::int64_t>(static_cast<double>(window.width) * scale + 0.5);
-    const auto height = static_cast<std::int64_t>(static_cast<double>(window.height) * scale + 0.5);
+    const auto width = std::int64_t{std::llround(static_cast<double>(window.width) * scale)};
+    const auto height = std::int64_t{std::llround(static_cast<double>(window.height) * scale)};
     const int level = window.level.value_or(0) - step;
     if (width == 0 || height == 0 || (level < 0 && !driver.asksForWindows)) {
       break;

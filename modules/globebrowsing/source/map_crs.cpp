@@ -103,7 +103,7 @@ std::string canonicalCrsName(std::string_view name) {
   if (colon != std::string::npos && colon < 12) {
     std::string authority = result.substr(0, colon);
     const std::string code = result.substr(colon + 1);
-    if (lowerCase(authority) == "epsg" || lowerCase(authority) == "esri") {
+    if (const std::string known = lowerCase(authority); known == "epsg" || known == "esri") {
       std::transform(authority.begin(), authority.end(), authority.begin(),
                      [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
       result = authority + ":" + code;

@@ -254,7 +254,9 @@ double RasterGeoreference::pixelAngleAt(double column, double row) const {
   const double y = cell(row, height_);
   const int left = std::min(static_cast<int>(x), cells - 2);
   const int top = std::min(static_cast<int>(y), cells - 2);
-  const auto at = [this](int c, int r) { return pixelAngles_[static_cast<std::size_t>(r * cells + c)]; };
+  const auto at = [this](int c, int r) {
+    return pixelAngles_[static_cast<std::size_t>(r) * cells + static_cast<std::size_t>(c)];
+  };
   return std::lerp(std::lerp(at(left, top), at(left + 1, top), x - left),
                    std::lerp(at(left, top + 1), at(left + 1, top + 1), x - left), y - top);
 }
@@ -287,13 +289,13 @@ Result<void> RasterGeoreference::measure(const std::string& where) {
   }
   // A grid over the raster, brought to longitude and latitude.
   constexpr int points = cells + 1;
-  std::vector<double> x(points * points);
-  std::vector<double> y(points * points);
+  std::vector<double> x(std::size_t{points} * points);
+  std::vector<double> y(std::size_t{points} * points);
   for (int r = 0; r < points; ++r) {
     for (int c = 0; c < points; ++c) {
       const double column = static_cast<double>(width_) * c / cells;
       const double row = static_cast<double>(height_) * r / cells;
-      const auto i = static_cast<std::size_t>(r * points + c);
+      const auto i = static_cast<std::size_t>(r) * points + static_cast<std::size_t>(c);
       x[i] = crsFromPixel_[0] + crsFromPixel_[1] * column + crsFromPixel_[2] * row;
       y[i] = crsFromPixel_[3] + crsFromPixel_[4] * column + crsFromPixel_[5] * row;
     }
@@ -333,7 +335,7 @@ Result<void> RasterGeoreference::measure(const std::string& where) {
   double previous = std::numeric_limits<double>::quiet_NaN();
   finestPixelAngle_ = std::numeric_limits<double>::max();
   pixelAngles_.assign(std::size_t{cells} * cells, 0.0);
-  const auto at = [](int r, int c) { return static_cast<std::size_t>(r * points + c); };
+  const auto at = [](int r, int c) { return static_cast<std::size_t>(r) * points + static_cast<std::size_t>(c); };
   const auto side = [&](std::size_t a, std::size_t b, double pixels) {
     return good[a] != 0 && good[b] != 0 ? greatCircle(x[a], y[a], x[b], y[b]) / pixels : 0.0;
   };
@@ -353,7 +355,7 @@ Result<void> RasterGeoreference::measure(const std::string& where) {
       const double wide = c < cells ? side(i, at(r, c + 1), width_ / double{cells}) : 0.0;
       const double high = r < cells ? side(i, at(r + 1, c), height_ / double{cells}) : 0.0;
       if (c < cells && r < cells) {
-        pixelAngles_[static_cast<std::size_t>(r * cells + c)] = std::sqrt(wide * high);
+        pixelAngles_[static_cast<std::size_t>(r) * cells + static_cast<std::size_t>(c)] = std::sqrt(wide * high);
       }
       for (const double angle : {wide, high}) {
         if (angle > 0.0) {

@@ -181,12 +181,12 @@ Result<HeightPixels> readHeights(PixelReader& reader, const TileRequest& tile, c
 }
 
 Result<ColourPixels> resampleColours(const RasterSource& source, const Tiling& tiling, const TileIndex& index,
-                                     const TileLayout& layout, std::stop_token stop) {
+                                     const TileLayout& layout, const std::stop_token& stop) {
   return resample<ColourPixels>(source, {tiling, index, layout}, stop, readColours);
 }
 
 Result<HeightPixels> resampleHeights(const RasterSource& source, const Tiling& tiling, const TileIndex& index,
-                                     const TileLayout& layout, std::stop_token stop) {
+                                     const TileLayout& layout, const std::stop_token& stop) {
   return resample<HeightPixels>(source, {tiling, index, layout}, stop, readHeights);
 }
 

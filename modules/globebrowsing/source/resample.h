@@ -44,9 +44,9 @@ struct HeightPixels {
 /// "cancelled" when `stop` was requested. Blocking; call on a worker.
 [[nodiscard]] Result<ColourPixels> resampleColours(const RasterSource& source, const Tiling& tiling,
                                                    const TileIndex& index, const TileLayout& layout,
-                                                   std::stop_token stop);
+                                                   const std::stop_token& stop);
 [[nodiscard]] Result<HeightPixels> resampleHeights(const RasterSource& source, const Tiling& tiling,
                                                    const TileIndex& index, const TileLayout& layout,
-                                                   std::stop_token stop);
+                                                   const std::stop_token& stop);
 
 }  // namespace meridian::globebrowsing

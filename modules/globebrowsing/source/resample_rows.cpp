@@ -136,7 +136,8 @@ Result<void> forEachRow(PixelReader& reader, std::size_t level, const PixelWindo
       return done;
     }
     for (int r = 0; r < rows; ++r) {
-      row(static_cast<std::size_t>(y + r), strip.data() + static_cast<std::ptrdiff_t>(r) * window.width);
+      row(static_cast<std::size_t>(y) + static_cast<std::size_t>(r),
+          strip.data() + static_cast<std::ptrdiff_t>(r) * window.width);
     }
   }
   return {};
@@ -247,14 +248,15 @@ Result<void> sampleBand(PixelReader& reader, const TileRequest& tile, const Band
   }
   const auto size = static_cast<std::size_t>(tile.layout.size());
   const PixelWindow window{columns.first, rows.first, columns.end - columns.first, rows.end - rows.first};
-  if (!reader.isPlan() && isAligned(columns) && isAligned(rows)) {
+  const bool isPlan = reader.isPlan();
+  if (!isPlan && isAligned(columns) && isAligned(rows)) {
     return copyBand(reader, sampling.level, columns, rows, window, out, stop);
   }
-  std::vector<ColourSum> sums(reader.isPlan() ? 0 : size * static_cast<std::size_t>(window.height));
+  std::vector<ColourSum> sums(isPlan ? 0 : size * static_cast<std::size_t>(window.height));
   auto done = forEachRow<Rgba>(reader, sampling.level, window, stop, [&](std::size_t row, const Rgba* pixels) {
     sumColours(pixels, columns, sums.data() + row * size);
   });
-  if (!done || reader.isPlan()) {
+  if (!done || isPlan) {
     return done;
   }
   std::vector<ColourSum> line(size);

@@ -146,7 +146,7 @@ Result<std::string> documentOfMaps(const Capabilities& capabilities, const TileS
                                                         {"Styles", parameter("styles")},
                                                         {"Transparent", parameter("transparent")}}) {
     if (!value.empty()) {
-      element += "    <" + name + ">" + escapedXml(value) + "</" + name + ">\n";
+      element += fmt::format("    <{0}>{1}</{0}>\n", name, escapedXml(value));
     }
   }
   // Whole tiles of the coarsest level, so that both programs lay out the same pyramid.
@@ -180,7 +180,7 @@ std::string wmtsPath(const Capabilities& capabilities, const CapabilitiesLayer& 
   std::string path = "WMTS:" + capabilities.url + ",layer=\"" + layer.identifier + "\"";
   for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{
            {"style", choices.style}, {"tilematrixset", choices.matrixSet}, {"time", choices.time}}) {
-    path += value.empty() ? std::string() : "," + name + "=\"" + value + "\"";
+    path += value.empty() ? std::string() : fmt::format(",{}=\"{}\"", name, value);
   }
   return path;
 }
