@@ -100,10 +100,10 @@ std::string canonicalCrsName(std::string_view name) {
     result = "EPSG:" + text;
   }
   const std::size_t colon = result.find(':');
-  if (colon != std::string::npos && colon < 12) {
+  if (colon < 12) {  // npos is greater
     std::string authority = result.substr(0, colon);
     const std::string code = result.substr(colon + 1);
-    if (const std::string known = lowerCase(authority); known == "epsg" || known == "esri") {
+    if (lowerCase(authority) == "epsg" || lowerCase(authority) == "esri") {
       std::transform(authority.begin(), authority.end(), authority.begin(),
                      [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
       result = authority + ":" + code;
