@@ -30,6 +30,9 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds compiled(20);
 constexpr std::chrono::milliseconds cacheWriting(100);
 
+/// Of the warm-up thread, beyond the render thread's; workers' is greater, for programs are waited for.
+constexpr int niceness = 5;
+
 /// Compiles, links and warms with the current context, which it leaves in the default state.
 Result<GLuint> build(const ProgramDescription& description, Statistics& statistics) {
   const Clock::time_point start = Clock::now();
@@ -161,7 +164,7 @@ std::shared_ptr<ProgramHandle::Entry> ProgramCache::Implementation::takeNext() {
 
 void ProgramCache::Implementation::run() {
   // Frames come first; on Linux both calls are about the calling thread alone. Refused it stays as it is.
-  setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + 5);
+  setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + niceness);
   const auto current = context->makeCurrent();
   if (current) {
     applyDefaultState();

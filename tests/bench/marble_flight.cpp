@@ -77,6 +77,7 @@ int main(int argc, char** argv) {
   Marble::MarbleMap map;
   setUp(map);
   QImage image(width, height, QImage::Format_ARGB32_Premultiplied);
+  image.fill(Qt::transparent);
   std::vector<double> times;
   for (const bool measures : {false, true}) {
     for (const Pose& pose : poses) {
@@ -87,7 +88,7 @@ int main(int argc, char** argv) {
       }
     }
   }
-  if (qAlpha(image.pixel(width / 2, height / 2)) == 0 || image.pixel(width / 2, height / 2) == image.pixel(0, 0)) {
+  if (qAlpha(image.pixel(width / 2, height / 2)) == 0) {
     std::cerr << "bench-marble: there is no globe in its pictures; is its theme earth/bluemarble installed?\n";
     return 1;
   }
