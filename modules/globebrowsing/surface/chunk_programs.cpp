@@ -146,7 +146,8 @@ Result<void> ChunkPrograms::set(const ChunkProgramKey& key) {
     }
     wanted_ = *std::move(set);
   }
-  if (ready()) {
+  drawsWanted_ = isReady(wanted_);
+  if (drawsWanted_) {
     drawn_ = wanted_;
   }
   return {};

@@ -57,8 +57,8 @@ class ChunkPrograms {
   void prepareFades();
   /// Whether that was done for what draws now.
   [[nodiscard]] bool hasPreparedFades() const { return !prepared_.empty() && preparedKey_ == unfaded(drawn_.key); }
-  /// Whether the programs of the key asked for are ready.
-  [[nodiscard]] bool ready() const { return isReady(wanted_); }
+  /// Whether what draws now are the programs of the key asked for. One that was finished since set() draws nothing yet.
+  [[nodiscard]] bool ready() const { return drawsWanted_; }
   /// The compiler's complaint, or empty.
   [[nodiscard]] std::string error() const;
 
@@ -89,6 +89,7 @@ class ChunkPrograms {
   graphics::Graphics& graphics_;
   Set wanted_;
   Set drawn_;  ///< the last that was ready
+  bool drawsWanted_ = false;
   ChunkProgramKey preparedKey_;
   std::vector<Set> prepared_;  ///< of preparedKey_, with fades
 };
