@@ -25,6 +25,10 @@ struct ScriptFunction {
   std::size_t minimumArguments = 0;
   std::size_t maximumArguments = 0;
   std::function<ScriptResult(std::span<const Value>)> call;
+  /// Whether a call with these arguments has to wait for what is on its way. The script then stands still while frames
+  /// go on, and this is asked again in each. Empty: never. Where a script cannot stand still (in an expression that is
+  /// evaluated, in a function that C code calls, in a coroutine of its own) `call` comes at once all the same.
+  std::function<bool(std::span<const Value>)> mustWait{};
 };
 
 /// `openspace.NAME.*`; an empty name means `openspace.*` itself.

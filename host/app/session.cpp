@@ -27,6 +27,7 @@ Result<std::unique_ptr<Session>> Session::create(Application& application, const
 Result<void> Session::advance() {
   const double seconds = timer_.tick();
   application_.addSeconds(seconds);
+  resumeScripts();
   for (const Error& error : application_.scripts().runQueued()) {
     log::error("{}", error.message());
   }
@@ -45,9 +46,15 @@ Result<void> Session::advance() {
   return record(seconds);
 }
 
+void Session::resumeScripts() {
+  for (const Error& error : application_.scripts().resumeWaiting()) {
+    log::error("{}", error.message());
+  }
+}
+
 Result<void> Session::checkPlayback() const {
   const recording::SessionControl& control = application_.recording();
-  if (!isPlaying() || !control.isPlaybackPaused() || application_.scripts().hasQueued() ||
+  if (!isPlaying() || !control.isPlaybackPaused() || application_.scripts().hasQueued() || hasWaitingScripts() ||
       application_.animation().awaitsScript()) {
     return {};
   }

@@ -27,6 +27,10 @@ class Session {
   /// start. Errors: what `--record` names cannot be written any more; a recording that a script began ends then, and
   /// nothing else does.
   [[nodiscard]] Result<void> advance();
+  /// Scripts that waited for something go on, also between two drawings of a frame.
+  void resumeScripts();
+  /// Whether one still waits.
+  [[nodiscard]] bool hasWaitingScripts() const { return application_.scripts().hasWaiting(); }
   /// Lifts a camera that no recording moves out of terrain that was loaded since `advance`. Whether that moved it.
   bool keepClear();
   /// Writes the end of what is recorded.

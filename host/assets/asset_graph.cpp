@@ -195,7 +195,7 @@ bool AssetGraph::initialize(Asset& asset) {
     }
   }
   for (std::size_t i = 0; i < asset.onInitialize.size(); ++i) {
-    if (Result<void> done = callFunction(asset, asset.onInitialize[i]); !done) {
+    if (Result<void> done = startFunction(asset, asset.onInitialize[i]); !done) {
       fail(asset, std::move(done.error()));
       return false;
     }
@@ -203,6 +203,18 @@ bool AssetGraph::initialize(Asset& asset) {
   asset.state = Asset::State::Initialized;
   initialized_.push_back(&asset);
   return true;
+}
+
+Result<void> AssetGraph::startFunction(Asset& asset, int reference) {
+  const Running running(running_, asset);
+  lua_rawgeti(engine_->state(), LUA_REGISTRYINDEX, reference);
+  // What waits counts as done: other assets need not wait as well. An asset that is gone by then has nothing to go on.
+  return engine_->start(0, [this, id = asset.id](const std::function<void()>& part) {
+    if (Asset* const still = find(id); still != nullptr && still->state == Asset::State::Initialized) {
+      const Running again(running_, *still);
+      part();
+    }
+  });
 }
 
 Result<void> AssetGraph::callFunction(Asset& asset, int reference) {

@@ -90,6 +90,8 @@ class AssetGraph {
   /// Whether the one can go on: the other is well, or only its data are not there.
   bool accept(Asset& asset, const Asset& required);
   Result<void> runFile(Asset& asset, bool enabled);
+  /// It may wait, and then goes on after this has returned.
+  Result<void> startFunction(Asset& asset, int reference);
   Result<void> callFunction(Asset& asset, int reference);
   void deinitialize(Asset& asset);
   static void takeBack(Asset& asset);

@@ -20,8 +20,31 @@ struct ScriptEngine::Private : Guard {
   Error raised;                          ///< the last error made by pushError, and its text
   std::string raisedText;
   std::optional<Error> explained;  ///< by the message handler of the call that failed
+  /// The thread of a script that may wait and runs now, and the call that it begins to wait for.
+  lua_State* thread = nullptr;
+  const ScriptFunction* awaited = nullptr;
+  std::vector<Value> awaitedArguments;
 
   static Private& of(lua_State* lua) { return static_cast<Private&>(guardOf(lua)); }
+
+  /// The Lua function for every ScriptFunction, which its upvalue points to.
+  static int callFunction(lua_State* lua);
+  /// Whether the call has to wait and can; then it is the awaited one.
+  bool beginsToWait(lua_State* lua, const ScriptFunction& function);
+  /// Of a failed protected call whose message was handled by explain().
+  Error takeError(int status, const std::string& chunkName, std::size_t memoryBytes);
+  /// A message handler: finds the parts of the error.
+  static int explain(lua_State* lua);
+};
+
+/// A script in a Lua thread of its own.
+struct ScriptEngine::Waiting {
+  lua_State* thread = nullptr;
+  int reference = 0;  ///< keeps the thread
+  std::string chunkName;
+  Around around;
+  const ScriptFunction* awaited = nullptr;
+  std::vector<Value> arguments{};  ///< of the awaited call
 };
 
 namespace {
@@ -101,11 +124,16 @@ void pushLibraryTable(lua_State* lua, const std::string& name, const std::string
   lua_rawset(lua, -4);
 }
 
-Result<int> invoke(lua_State* lua, const ScriptFunction& function) {
+std::size_t argumentCount(lua_State* lua, const ScriptFunction& function) {
   auto count = static_cast<std::size_t>(lua_gettop(lua));
   while (count > function.minimumArguments && lua_isnil(lua, static_cast<int>(count))) {
     --count;
   }
+  return count;
+}
+
+Result<std::vector<Value>> argumentsOf(lua_State* lua, const ScriptFunction& function) {
+  const std::size_t count = argumentCount(lua, function);
   if (count < function.minimumArguments || count > function.maximumArguments) {
     return failure(fmt::format("{} takes {} arguments ({}), got {}", function.name,
                                function.minimumArguments == function.maximumArguments
@@ -122,7 +150,13 @@ Result<int> invoke(lua_State* lua, const ScriptFunction& function) {
     }
     arguments.push_back(std::move(*argument));
   }
-  const ScriptResult result = function.call(arguments);
+  return arguments;
+}
+
+Result<int> invoke(lua_State* lua, const ScriptFunction& function) {
+  const ScriptResult result = argumentsOf(lua, function).and_then([&](const std::vector<Value>& arguments) {
+    return function.call(arguments);
+  });
   if (!result) {
     return tl::make_unexpected(result.error());
   }
@@ -133,7 +167,95 @@ Result<int> invoke(lua_State* lua, const ScriptFunction& function) {
   return static_cast<int>(result->size());
 }
 
+const ScriptFunction& calledFunction(lua_State* lua) {
+  return *static_cast<const ScriptFunction*>(lua_touserdata(lua, lua_upvalueindex(1)));
+}
+
+/// The name of the chunk that a function on the stack is of.
+std::string chunkOf(lua_State* lua, int index) {
+  lua_Debug function{};
+  lua_pushvalue(lua, index);
+  lua_getinfo(lua, ">S", &function);
+  return function.source[0] == '@' ? function.source + 1 : function.short_src;
+}
+
+/// The body of a script's thread, which has a message handler, a function and its arguments on its stack: as
+/// lua_pcall(), but the function may wait. Leaves the status.
+int guardedBody(lua_State* lua) {
+  const auto finish = [](lua_State* thread, int status, lua_KContext /*context*/) -> int {
+    lua_pushinteger(thread, status == LUA_YIELD ? LUA_OK : status);
+    return 1;
+  };
+  return finish(lua, lua_pcallk(lua, lua_gettop(lua) - 2, 0, 1, 0, finish), 0);
+}
+
 }  // namespace
+
+bool ScriptEngine::Private::beginsToWait(lua_State* lua, const ScriptFunction& function) {
+  if (!function.mustWait || !engine->mayWait_ || lua != thread || lua_isyieldable(lua) == 0) {
+    return false;
+  }
+  Result<std::vector<Value>> arguments = argumentsOf(lua, function);
+  if (!arguments || !function.mustWait(*arguments)) {
+    return false;
+  }
+  awaited = &function;
+  awaitedArguments = std::move(*arguments);
+  return true;
+}
+
+int ScriptEngine::Private::callFunction(lua_State* lua) {
+  Private& self = of(lua);
+  const auto callNow = [](lua_State* caller, int /*status*/, lua_KContext /*context*/) -> int {
+    Private& engine = of(caller);
+    const Scoped calling(engine.calling, caller);
+    Result<int> results = invoke(caller, calledFunction(caller));
+    if (results) {
+      return *results;
+    }
+    Error error = std::move(results.error());
+    error.where = joinedPlace(placeFrom(caller, 1), error.where);
+    engine.engine->pushError(caller, std::move(error));
+    return lua_error(caller);
+  };
+  if (self.beginsToWait(lua, calledFunction(lua))) {
+    return lua_yieldk(lua, 0, 0, callNow);
+  }
+  return callNow(lua, LUA_OK, 0);
+}
+
+int ScriptEngine::Private::explain(lua_State* lua) {
+  Private& self = of(lua);
+  std::size_t length = 0;
+  const char* text = luaL_tolstring(lua, 1, &length);
+  const std::string_view message(text, length);
+  if (message == self.raisedText) {
+    self.explained = self.raised;
+    return 1;
+  }
+  lua_Debug frame{};
+  std::string abridged;
+  for (int level = 0; lua_getstack(lua, level, &frame) != 0; ++level) {
+    lua_getinfo(lua, "Sl", &frame);
+    if (frame.currentline > 0) {
+      abridged = fmt::format("{}:{}", frame.short_src, frame.currentline);
+      break;
+    }
+  }
+  self.explained = withoutPlace(message, placeFrom(lua, 0), abridged.c_str());
+  return 1;
+}
+
+Error ScriptEngine::Private::takeError(int status, const std::string& chunkName, std::size_t memoryBytes) {
+  Error error{"the script failed", chunkName};
+  if (status == LUA_ERRMEM) {
+    error.what = fmt::format("the script needs more than {} MiB of memory", memoryBytes >> 20);
+  } else if (explained) {
+    error = *std::exchange(explained, std::nullopt);
+    error.where = error.where.empty() ? chunkName : error.where;
+  }
+  return error;
+}
 
 ScriptEngine::ScriptEngine(ScriptLimits limits) : limits_(limits), private_(std::make_unique<Private>()) {
   private_->engine = this;
@@ -160,19 +282,6 @@ ScriptEngine::~ScriptEngine() {
 
 void ScriptEngine::registerLibrary(const ScriptLibrary& library) {
   const Scoped unlimited(private_->memoryLimit, std::numeric_limits<std::size_t>::max());
-  const auto trampoline = [](lua_State* lua) -> int {
-    Private& self = Private::of(lua);
-    const auto& function = *static_cast<const ScriptFunction*>(lua_touserdata(lua, lua_upvalueindex(1)));
-    const Scoped calling(self.calling, lua);
-    Result<int> results = invoke(lua, function);
-    if (results) {
-      return *results;
-    }
-    Error error = std::move(results.error());
-    error.where = joinedPlace(placeFrom(lua, 1), error.where);
-    self.engine->pushError(lua, std::move(error));
-    return lua_error(lua);
-  };
   lua_pushglobaltable(lua_);
   pushLibraryTable(lua_, "openspace", "openspace");
   if (!library.name.empty()) {
@@ -186,7 +295,7 @@ void ScriptEngine::registerLibrary(const ScriptLibrary& library) {
     ScriptFunction& kept = private_->functions.emplace_back(function);
     lua_pushlstring(lua_, function.name.data(), function.name.size());
     lua_pushlightuserdata(lua_, &kept);
-    lua_pushcclosure(lua_, trampoline, 1);
+    lua_pushcclosure(lua_, Private::callFunction, 1);
     lua_rawset(lua_, -3);
   }
   lua_settop(lua_, 0);
@@ -217,36 +326,12 @@ Result<void> ScriptEngine::load(std::string_view text, const std::string& chunkN
 Result<void> ScriptEngine::call(int arguments, int results) {
   Private& self = *private_;
   const int functionIndex = lua_gettop(lua_) - arguments;
-  lua_Debug function{};
-  lua_pushvalue(lua_, functionIndex);
-  lua_getinfo(lua_, ">S", &function);
-  const std::string chunkName = function.source[0] == '@' ? function.source + 1 : function.short_src;
-
-  const auto explain = [](lua_State* lua) -> int {
-    Private& engine = Private::of(lua);
-    std::size_t length = 0;
-    const char* text = luaL_tolstring(lua, 1, &length);
-    const std::string_view message(text, length);
-    if (message == engine.raisedText) {
-      engine.explained = engine.raised;
-    } else {
-      lua_Debug frame{};
-      std::string abridged;
-      for (int level = 0; lua_getstack(lua, level, &frame) != 0; ++level) {
-        lua_getinfo(lua, "Sl", &frame);
-        if (frame.currentline > 0) {
-          abridged = fmt::format("{}:{}", frame.short_src, frame.currentline);
-          break;
-        }
-      }
-      engine.explained = withoutPlace(message, placeFrom(lua, 0), abridged.c_str());
-    }
-    return 1;
-  };
-  lua_pushcfunction(lua_, explain);
+  const std::string chunkName = chunkOf(lua_, functionIndex);
+  lua_pushcfunction(lua_, Private::explain);
   lua_insert(lua_, functionIndex);
 
   const Scoped calling(self.calling, static_cast<lua_State*>(nullptr));
+  const Scoped thread(self.thread, static_cast<lua_State*>(nullptr));
   const Scoped budget(self.instructionsLeft, static_cast<std::int64_t>(limits_.instructions));
   const Scoped exhausted(self.exhausted, false);
   installHook(lua_);
@@ -257,13 +342,7 @@ Result<void> ScriptEngine::call(int arguments, int results) {
   if (status == LUA_OK) {
     return {};
   }
-  Error error{"the script failed", chunkName};
-  if (status == LUA_ERRMEM) {
-    error.what = fmt::format("the script needs more than {} MiB of memory", limits_.memoryBytes >> 20);
-  } else if (self.explained) {
-    error = *std::exchange(self.explained, std::nullopt);
-    error.where = error.where.empty() ? chunkName : error.where;
-  }
+  Error error = self.takeError(status, chunkName, limits_.memoryBytes);
   lua_pop(lua_, 1);
   if (status == LUA_ERRMEM) {
     lua_gc(lua_, LUA_GCCOLLECT);
@@ -271,8 +350,92 @@ Result<void> ScriptEngine::call(int arguments, int results) {
   return tl::make_unexpected(std::move(error));
 }
 
+Result<void> ScriptEngine::start(int arguments, Around around) {
+  const std::string chunkName = chunkOf(lua_, lua_gettop(lua_) - arguments);
+  Waiting script{nullptr, LUA_NOREF, chunkName, std::move(around)};
+  {
+    const Scoped unlimited(private_->memoryLimit, std::numeric_limits<std::size_t>::max());
+    script.thread = lua_newthread(lua_);
+    script.reference = luaL_ref(lua_, LUA_REGISTRYINDEX);
+    lua_checkstack(script.thread, arguments + 3);
+  }
+  lua_pushcfunction(script.thread, guardedBody);
+  lua_pushcfunction(script.thread, Private::explain);
+  lua_xmove(lua_, script.thread, arguments + 1);
+  return runPart(std::move(script), arguments + 2);
+}
+
+Result<void> ScriptEngine::runPart(Waiting script, int arguments) {
+  Private& self = *private_;
+  const Scoped calling(self.calling, static_cast<lua_State*>(nullptr));
+  const Scoped thread(self.thread, script.thread);
+  const Scoped budget(self.instructionsLeft, static_cast<std::int64_t>(limits_.instructions));
+  const Scoped exhausted(self.exhausted, false);
+  installHook(script.thread);
+  self.explained.reset();
+  self.awaited = nullptr;
+  int results = 0;
+  const int resumed = lua_resume(script.thread, lua_, arguments, &results);
+  if (resumed == LUA_YIELD && self.awaited != nullptr) {
+    script.awaited = std::exchange(self.awaited, nullptr);
+    script.arguments = std::exchange(self.awaitedArguments, {});
+    waiting_.push_back(std::move(script));
+    return {};
+  }
+  Result<void> result;
+  if (resumed == LUA_YIELD) {
+    result = failure("attempt to yield from outside a coroutine", placeFrom(script.thread, 0));
+  } else {
+    const int status = resumed == LUA_OK ? static_cast<int>(lua_tointeger(script.thread, -1)) : resumed;
+    if (status != LUA_OK) {
+      result = tl::make_unexpected(self.takeError(status, script.chunkName, limits_.memoryBytes));
+    }
+    if (status == LUA_ERRMEM) {
+      lua_gc(lua_, LUA_GCCOLLECT);
+    }
+  }
+  luaL_unref(lua_, LUA_REGISTRYINDEX, script.reference);
+  return result;
+}
+
+bool ScriptEngine::hasWaiting() const {
+  return !waiting_.empty();
+}
+
+std::vector<Error> ScriptEngine::resumeWaiting() {
+  std::vector<Error> errors;
+  std::vector<Waiting> now;
+  now.swap(waiting_);
+  for (Waiting& script : now) {
+    // Another script may have got hold of the thread and have resumed or closed it.
+    const bool isThere = lua_status(script.thread) == LUA_YIELD;
+    if (isThere && script.awaited->mustWait(script.arguments)) {
+      waiting_.push_back(std::move(script));
+      continue;
+    }
+    const int reference = script.reference;
+    bool isRun = false;
+    const auto part = [&] {
+      isRun = true;
+      if (Result<void> done = runPart(std::move(script), 0); !done) {
+        errors.push_back(std::move(done.error()));
+      }
+    };
+    const Around around = script.around;
+    if (isThere && around) {
+      around(part);
+    } else if (isThere) {
+      part();
+    }
+    if (!isRun) {
+      luaL_unref(lua_, LUA_REGISTRYINDEX, reference);
+    }
+  }
+  return errors;
+}
+
 Result<void> ScriptEngine::run(std::string_view text, const std::string& chunkName) {
-  return load(text, chunkName).and_then([this] { return call(0, 0); });
+  return load(text, chunkName).and_then([this] { return start(0); });
 }
 
 Result<std::vector<Value>> ScriptEngine::evaluate(std::string_view expression, const std::string& chunkName) {

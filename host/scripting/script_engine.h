@@ -42,7 +42,7 @@ class ScriptEngine {
   /// All that was registered, by name: for documentation.
   [[nodiscard]] const std::map<std::string, ScriptLibrary>& libraries() const { return libraries_; }
 
-  /// Runs text at once. `chunkName` is a file's path, or a word such as "script".
+  /// Runs text at once, up to where it waits. `chunkName` is a file's path, or a word such as "script".
   Result<void> run(std::string_view text, const std::string& chunkName);
   /// The values of `return EXPRESSION`.
   [[nodiscard]] Result<std::vector<Value>> evaluate(std::string_view expression, const std::string& chunkName);
@@ -52,6 +52,12 @@ class ScriptEngine {
   /// Runs what waits, in order, and tells the observers. An error ends its own script only.
   std::vector<Error> runQueued();
   [[nodiscard]] bool hasQueued() const { return !queue_.empty(); }
+
+  /// Goes on with scripts that wait for nothing any longer (ScriptFunction::mustWait). Returns their errors.
+  std::vector<Error> resumeWaiting();
+  [[nodiscard]] bool hasWaiting() const;
+  /// For runs without frames: functions that would have to wait are called at once.
+  void neverWait() { mayWait_ = false; }
 
   /// Hears every queued script before it runs, so that a recording can keep it.
   void onQueuedScript(std::function<void(std::string_view text)> observer) {
@@ -70,12 +76,19 @@ class ScriptEngine {
   /// Calls the function below `arguments` values on the stack, under fresh instruction limits; on success `results`
   /// values (-1: all) replace them, on error nothing does.
   Result<void> call(int arguments, int results);
+  /// What is to be around every part of a script after its first; one that does not call `part` ends the script.
+  using Around = std::function<void(const std::function<void()>& part)>;
+  /// As call() without results; but where the function waits this returns, and the rest comes with resumeWaiting().
+  Result<void> start(int arguments, Around around = {});
   /// The Error that a C++ function makes into a Lua error: it pushes the message and remembers the parts, so that the
   /// caller of run() gets them back. Lua's own error() must follow.
   void pushError(lua_State* lua, Error error);
 
  private:
   struct Private;
+  struct Waiting;
+  /// Runs a thread until it ends or waits.
+  Result<void> runPart(Waiting script, int arguments);
   struct Queued {
     std::string text;
     std::string chunkName;
@@ -86,6 +99,8 @@ class ScriptEngine {
   lua_State* lua_ = nullptr;
   std::map<std::string, ScriptLibrary> libraries_;
   std::deque<Queued> queue_;
+  std::vector<Waiting> waiting_;
+  bool mayWait_ = true;
   std::vector<std::function<void(std::string_view)>> observers_;
 };
 

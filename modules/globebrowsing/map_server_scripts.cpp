@@ -104,7 +104,8 @@ std::vector<ScriptFunction> mapServerFunctions(Host& host, MapServers& servers) 
              return name ? none({}) : tl::make_unexpected(name.error());
            }},
           {"capabilitiesWMS", "name", "The layers that a map server offers: { Name, URL } each", 1, 1,
-           [&servers](Arguments a) { return capabilities(servers, a); }},
+           [&servers](Arguments a) { return capabilities(servers, a); },
+           [&servers](Arguments a) { return a[0].string() != nullptr && servers.stillLoads(*a[0].string()); }},
           {"urlInfo", "globe", "The map servers of a globe: { name, url } each", 1, 1,
            [&servers](Arguments a) { return urlInfo(servers, a); }},
           {"loadWMSServersFromFile", "file", "Names the map servers that a Lua file lists by globe", 1, 1,

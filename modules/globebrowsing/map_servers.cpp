@@ -58,6 +58,13 @@ bool MapServers::isLoading(std::string_view name) const {
   return found != servers_.end() && found->second.isLoading;
 }
 
+bool MapServers::stillLoads(std::string_view name) {
+  if (deliver_) {
+    deliver_();
+  }
+  return isLoading(name);
+}
+
 std::vector<MapServer> MapServers::of(std::string_view globe) const {
   std::vector<MapServer> found;
   for (const auto& [name, known] : servers_) {

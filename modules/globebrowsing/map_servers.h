@@ -43,8 +43,11 @@ class MapServers {
   /// blocks. `done` may be called after the server was removed, but not after the MapServers have gone.
   using Loader = std::function<void(const MapServer& server, std::function<void(Offer)> done)>;
 
-  /// Without a loader servers are kept, and what they offer stays unknown.
-  void setLoader(Loader loader) { loader_ = std::move(loader); }
+  /// Without a loader servers are kept, and what they offer stays unknown. `deliver` has it call what has arrived.
+  void setLoader(Loader loader, std::function<void()> deliver = {}) {
+    loader_ = std::move(loader);
+    deliver_ = std::move(deliver);
+  }
 
   /// Replaces a server of the same name, and has its capabilities loaded.
   void add(MapServer server);
@@ -60,6 +63,8 @@ class MapServers {
   [[nodiscard]] const Offer& offered(std::string_view name) const;
   /// Whether its capabilities are on their way.
   [[nodiscard]] bool isLoading(std::string_view name) const;
+  /// The same, after what has arrived was taken in: for who waits, where perhaps no globe is drawn.
+  [[nodiscard]] bool stillLoads(std::string_view name);
 
  private:
   struct Known {
@@ -69,6 +74,7 @@ class MapServers {
     unsigned generation = 0;  ///< so that answers for a former server of the name are dropped
   };
   Loader loader_;
+  std::function<void()> deliver_;
   std::map<std::string, Known, std::less<>> servers_;
   unsigned generation_ = 0;
 };

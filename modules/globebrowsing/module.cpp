@@ -17,9 +17,11 @@ class GlobeBrowsingModule final : public Module {
 
   Result<void> initialize(Host& host) override {
     services_ = std::make_unique<GlobeServices>(*this, host.statistics(), host.paths().cache);
-    servers_.setLoader([this](const MapServer& server, std::function<void(MapServers::Offer)> done) {
-      services_->capabilities().load(server, std::move(done));
-    });
+    servers_.setLoader(
+        [this](const MapServer& server, std::function<void(MapServers::Offer)> done) {
+          services_->capabilities().load(server, std::move(done));
+        },
+        [this] { services_->capabilities().deliver(); });
     host.registerRenderable("RenderableGlobe", [this](const RenderableRequest& request) {
       return RenderableGlobe::create(request, *services_);
     });

@@ -1,7 +1,9 @@
 // What openspace.globebrowsing offers beside layers: GIBS, map servers, patches, GeoJSON. No OpenGL.
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include <cpl_minixml.h>
 #include <gmock/gmock.h>
@@ -193,6 +195,35 @@ TEST_F(GlobeScripts, KeepsMapServers) {
   EXPECT_EQ(run("removeWMSServer('M1') openspace.globebrowsing.removeWMSServer('M1')"), "");
   write("bad.lua", "return { Moon = { { Name = 'M1' } } }");
   EXPECT_THAT(run("loadWMSServersFromFile('bad.lua')"), HasSubstr("Moon[1]"));
+}
+
+TEST_F(GlobeScripts, AScriptTakesALayerOfAServerThatItNamedJustNow) {
+  write("capabilities.xml", R"(<WMS_Capabilities version="1.3.0"><Capability><Request><GetMap><Format>image/png</Format>
+      <DCPType><HTTP><Get><OnlineResource xlink:href="http://127.0.0.1:9/wms?" xmlns:xlink="http://www.w3.org/1999/xlink"/>
+      </Get></HTTP></DCPType></GetMap></Request><Layer><CRS>EPSG:4326</CRS><Layer><Name>clouds</Name><Title>Clouds</Title>
+      </Layer></Layer></Capability></WMS_Capabilities>)");
+  EXPECT_EQ(run("loadWMSCapabilities('Own', 'Earth', '" + host_.folder + R"(/capabilities.xml')
+      for _, layer in ipairs(openspace.globebrowsing.capabilitiesWMS('Own')) do
+        openspace.globebrowsing.addLayer('Earth', 'ColorLayers', { Identifier = layer.Name, FilePath = layer.URL })
+      end)"),
+            "");
+  EXPECT_TRUE(engine_.hasWaiting()) << "nothing is read on the render thread";
+  while (engine_.hasWaiting()) {
+    EXPECT_TRUE(engine_.resumeWaiting().empty());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_NE(group("Earth", LayerGroupId::ColorLayers).find("Clouds"), nullptr);
+}
+
+TEST_F(GlobeScripts, AScriptGoesOnWhenTheServerItWaitsForIsForgotten) {
+  EXPECT_EQ(run("loadWMSCapabilities('Gone', 'Earth', '/no/such/file.xml')"
+                " list = openspace.globebrowsing.capabilitiesWMS('Gone')"),
+            "");
+  EXPECT_TRUE(engine_.hasWaiting());
+  EXPECT_EQ(run("removeWMSServer('Gone')"), "");
+  EXPECT_TRUE(engine_.resumeWaiting().empty());
+  EXPECT_FALSE(engine_.hasWaiting());
+  EXPECT_EQ(engine_.evaluate("#list", "test")->front(), Value(0));
 }
 
 TEST_F(GlobeScripts, KeepsGeoJson) {

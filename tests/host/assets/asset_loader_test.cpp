@@ -173,6 +173,31 @@ TEST_F(AssetLoaderTest, AssetsThatAreAddedByAssetsComeWithTheNextFrame) {
   EXPECT_EQ(notes_, "more ");
 }
 
+TEST_F(AssetLoaderTest, AnInitialisationThatWaitsGoesOnAsItsAsset) {
+  bool isThere = false;
+  engine_.registerLibrary(
+      {"late",
+       {{"value", "", "", 0, 0, [](std::span<const Value>) -> ScriptResult { return std::vector<Value>{"value"}; },
+         [&](std::span<const Value>) { return !isThere; }}}});
+  const auto text = [](const std::string& name) {
+    return "asset.onInitialize(function() openspace.note(openspace.late.value())"
+           " openspace.addSceneGraphNode({ Identifier = '" +
+           name + "' }) openspace.note(asset.resource('a.txt')) end)";
+  };
+  folder_.write("deep/a.txt", "");
+  folder_.write("deep/one.asset", text("One"));
+  folder_.write("deep/two.asset", text("Two"));
+  ASSERT_TRUE(loader_.add("deep/one"));
+  ASSERT_TRUE(loader_.add("deep/two"));
+  EXPECT_EQ(notes_, "");
+  ASSERT_TRUE(loader_.remove("deep/two"));
+  isThere = true;
+  EXPECT_TRUE(engine_.resumeWaiting().empty());
+  EXPECT_EQ(notes_, "value " + (folder_.path() / "deep/a.txt").string() + " ");
+  EXPECT_EQ(target_.nodes, std::vector<std::string>{"One"});
+  EXPECT_EQ(target_.folders.back(), (folder_.path() / "deep").string());
+}
+
 TEST_F(AssetLoaderTest, KeepsWhatAnotherRootNeeds) {
   folder_.write("base.asset", "asset.onDeinitialize(function() openspace.note('gone') end)");
   folder_.write("a.asset", "asset.require('./base')");
