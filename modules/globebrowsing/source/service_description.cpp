@@ -52,28 +52,33 @@ struct Source {
 Result<ServiceDescription> describe(const Source& source);
 
 Result<ServiceDescription> describeVrt(const std::string& content, const Source& source, const std::string& folder) {
-  auto wrapper = readVrtWrapper(content, source.where);
-  if (!wrapper) {
-    return tl::make_unexpected(std::move(wrapper.error()));
+  auto read = readVrtWrapper(content, source.where);
+  if (!read) {
+    return tl::make_unexpected(std::move(read.error()));
   }
   ServiceDescription result;
-  result.reason = "the VRT does more than pass a service's bands on";
-  if (!*wrapper) {
+  result.reason = std::move(read->reason);
+  if (!read->wrapper) {
     return result;
   }
-  const std::string& inner = (*wrapper)->source;
+  const VrtWrapper& wrapper = *read->wrapper;
+  const std::string& inner = wrapper.source;
   const bool isFile = !isDocument(inner) && inner.find(':') == std::string::npos;
   const std::string path =
-      isFile && (*wrapper)->isRelative ? (std::filesystem::path(folder) / inner).lexically_normal().string() : inner;
+      isFile && wrapper.isRelative ? (std::filesystem::path(folder) / inner).lexically_normal().string() : inner;
   auto described = describe({path, isFile ? path : source.where, source.nesting + 1});
+  if (described && described->reference && (wrapper.declaresNoData || wrapper.scale || wrapper.offset)) {
+    result.reason = "the VRT says of a layer of capabilities what its values mean";
+    return result;
+  }
   if (!described || !described->service) {
     return described;
   }
-  std::optional<TileService> service = wrapped(**wrapper, std::move(*described->service));
-  if (service) {
-    result.service = std::move(service);
-    result.reason.clear();
+  result.service = wrapped(wrapper, std::move(*described->service));
+  if (result.service) {
     result.notes = std::move(described->notes);
+  } else {
+    result.reason = "the VRT shows its service elsewhere than it is";
   }
   return result;
 }
