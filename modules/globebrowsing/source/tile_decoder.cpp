@@ -61,9 +61,13 @@ Result<void> checkMatrix(const Image& image, const TileService& service, std::si
   assert(matrix < service.matrices.size());
   const TileMatrix& expected = service.matrices[matrix];
   if (image.width != expected.tileWidth || image.height != expected.tileHeight) {
+    const bool isSquare = image.width == image.height;
     return failure(fmt::format("the tile has {} x {} pixels in place of {} x {}", image.width, image.height,
                                expected.tileWidth, expected.tileHeight),
-                   service.where, "correct the description's block or tile size");
+                   service.where,
+                   service.isSizeGiven && isSquare
+                       ? fmt::format("write Tiles = {{ PixelSize = {} }} in the layer", image.width)
+                       : "correct the description's block or tile size");
   }
   return {};
 }

@@ -70,6 +70,8 @@ struct TileService {
   std::optional<double> heightScale{};   ///< metres for one unit of a stored height
   std::optional<double> heightOffset{};  ///< metres
   std::string attribution{};
+  /// The tiles' size is what the layer's Tiles.PixelSize says, or a guess: nothing else tells it (URL templates).
+  bool isSizeGiven = false;
 };
 
 }  // namespace meridian::globebrowsing

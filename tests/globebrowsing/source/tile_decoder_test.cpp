@@ -287,6 +287,16 @@ TEST(TileDecoder, ARealElevationTileIsThatOfItsMatrix) {
   EXPECT_LE(highest(pixels), highest(points));
 }
 
+TEST(TileDecoder, AnotherSizeNamesTheKeyThatTellsIt) {
+  TileService service = serviceOfSize(16, 16);
+  EXPECT_NE(errorOf(makePicture({"PNG", 32, 32, 3}, ramp), service).find("description"), std::string::npos);
+  service.isSizeGiven = true;
+  EXPECT_NE(errorOf(makePicture({"PNG", 32, 32, 3}, ramp), service).find("Tiles = { PixelSize = 32 }"),
+            std::string::npos);
+  EXPECT_EQ(errorOf(makePicture({"PNG", 32, 16, 3}, ramp), service).find("PixelSize"), std::string::npos)
+      << "no size would make it a square";
+}
+
 TEST(TileDecoder, TellsWhatIsWrong) {
   TileService service = serviceOfSize(256, 256);
   const std::string exception =
