@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "globebrowsing/providers/default_tile_provider.h"
+#include "globebrowsing/providers/tiles_table.h"
 #include "globebrowsing/source/service_text.h"
 
 namespace meridian::globebrowsing {
@@ -125,8 +127,14 @@ std::vector<Error> unknownLayerKeys(const ProviderRequest& request) {
   const auto provider =
       std::find_if(types.begin(), types.end(), [&](const auto& one) { return type && one.type == *type; });
   if (provider != types.end()) {
-    for (const UnknownKey& unknown : unknownKeys(request.table, {&layerSchema(), provider->schema}, ignored)) {
+    // Series hand their rasters' keys on.
+    const bool hasRasters = *type == LayerType::TemporalTileProvider || *type == LayerType::ImageSequenceTileProvider;
+    const Schema* rasters = hasRasters ? &DefaultTileProvider::schema() : provider->schema;
+    for (const UnknownKey& unknown : unknownKeys(request.table, {&layerSchema(), provider->schema, rasters}, ignored)) {
       notes.push_back(noteOf(unknown, placeOf(request, {})));
+    }
+    for (const UnknownTilesKey& unknown : unknownTilesKeys(request)) {
+      notes.push_back(noteOf(unknown.key, unknown.where));
     }
   }
   return notes;

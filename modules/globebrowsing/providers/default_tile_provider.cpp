@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "globebrowsing/providers/tiles_table.h"
 #include "globebrowsing/source/tiled_service_source.h"
 #include "host/api/log.h"
 
@@ -48,7 +49,8 @@ Result<std::optional<std::array<double, 4>>> extentOf(const ProviderRequest& req
 }
 
 /// The asset's word on heights, in place of the service's own.
-TileService withHeights(TileService service, const RasterDescription& description) {
+TileService withHeights(TileService service, const RasterDescription& description, const TileSettings& tiles) {
+  service.encoding = tiles.encoding.value_or(service.encoding);
   if (description.heightScale) {
     service.heightScale = description.heightScale;
   }
@@ -105,7 +107,8 @@ const Schema& DefaultTileProvider::schema() {
        {"HeightScale", Type::Number, "metres for one unit of a stored height, in place of the raster's own scale"},
        {"HeightOffset", Type::Number, "metres added to stored heights, in place of the raster's own offset"},
        {"HeightDatum", Type::Number,
-        "metres taken off the heights: the radius, where the raster stores heights as radii"}});
+        "metres taken off the heights: the radius, where the raster stores heights as radii"},
+       {"Tiles", Type::Table, "what a map service does not say of its tiles: Encoding, PixelSize and more"}});
   return fields;
 }
 
@@ -130,6 +133,10 @@ Result<std::shared_ptr<DefaultTileProvider>> DefaultTileProvider::makeUnopened(c
   if (!extent) {
     return tl::make_unexpected(std::move(extent.error()));
   }
+  auto tiles = readTiles(request);
+  if (!tiles) {
+    return tl::make_unexpected(std::move(tiles.error()));
+  }
   DataPath path = dataPath(filePath, request.folder);
   RasterDescription description;
   description.path = path.text;
@@ -138,22 +145,26 @@ Result<std::shared_ptr<DefaultTileProvider>> DefaultTileProvider::makeUnopened(c
   description.heightScale = numberAt(request.table, "HeightScale");
   description.heightOffset = numberAt(request.table, "HeightOffset");
   description.heightDatum = numberAt(request.table, "HeightDatum");
-  return std::make_shared<DefaultTileProvider>(std::move(path), std::move(description), request);
+  return std::make_shared<DefaultTileProvider>(std::move(path), std::move(description), std::move(*tiles), request);
 }
 
-DefaultTileProvider::DefaultTileProvider(DataPath path, RasterDescription description, const ProviderRequest& request)
+DefaultTileProvider::DefaultTileProvider(DataPath path, RasterDescription description, TileSettings tiles,
+                                         const ProviderRequest& request)
     : path_(std::move(path)),
       description_(std::move(description)),
+      tiles_(std::move(tiles)),
+      whereTiles_(placeOf(request, "Tiles")),
       sourceTiles_(request.sourceTiles),
       share_(request.share) {
   // A service has its own georeference; one that the asset replaces is a raster's.
   if (sourceTiles_ != nullptr && !description_.extentDegrees) {
-    opening_ = std::make_unique<ServiceOpening>(path_.text, description_.where, sourceTiles_->fetcher(), share_);
+    opening_ =
+        std::make_unique<ServiceOpening>(path_.text, description_.where, sourceTiles_->fetcher(), share_, tiles_);
   }
 }
 
 Result<void> DefaultTileProvider::check() const {
-  return checkData(path_, description_.where);
+  return checkTiles(tiles_, path_.text, whereTiles_).and_then([this] { return checkData(path_, description_.where); });
 }
 
 bool DefaultTileProvider::prepareData(const std::function<void()>& wake) {
@@ -192,8 +203,13 @@ Result<std::shared_ptr<PixelSource>> DefaultTileProvider::openSource() {
     }
     if (*service) {
       tellNotes();
-      return TiledServiceSource::make(withHeights(std::move(**service), description_), sourceTiles_);
+      return TiledServiceSource::make(withHeights(std::move(**service), description_, tiles_), sourceTiles_);
     }
+  }
+  if (!tiles_.isEmpty()) {
+    const std::string reason = opening_ != nullptr ? opening_->reason() : std::string("services are not asked here");
+    return failure("Tiles is of map services, and FilePath is opened as a raster: " + reason, whereTiles_,
+                   "leave Tiles out, or name a map service");
   }
   return RasterSource::open(description_);
 }

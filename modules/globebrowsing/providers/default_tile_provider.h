@@ -27,7 +27,7 @@ struct DataPath {
 /// Any georeferenced raster, cut into tiles, or the tiles of a map service: DefaultTileProvider.
 class DefaultTileProvider final : public TileProvider {
  public:
-  /// FilePath, and ours: ExtentDegrees, HeightScale, HeightOffset, HeightDatum.
+  /// FilePath, and ours: ExtentDegrees, HeightScale, HeightOffset, HeightDatum, Tiles.
   [[nodiscard]] static const Schema& schema();
   [[nodiscard]] static Result<std::shared_ptr<TileProvider>> make(const ProviderRequest& request);
   /// Of a map service, whatever FilePath says; the request has source tiles.
@@ -35,7 +35,7 @@ class DefaultTileProvider final : public TileProvider {
                                                                   std::unique_ptr<ServiceOpening> opening);
 
   /// Without source tiles, map services are left to GDAL.
-  DefaultTileProvider(DataPath path, RasterDescription description, const ProviderRequest& request);
+  DefaultTileProvider(DataPath path, RasterDescription description, TileSettings tiles, const ProviderRequest& request);
 
   [[nodiscard]] Result<void> check() const override;
   [[nodiscard]] std::optional<Error> lastFailure() const override;
@@ -63,6 +63,8 @@ class DefaultTileProvider final : public TileProvider {
 
   DataPath path_;
   RasterDescription description_;
+  TileSettings tiles_;
+  std::string whereTiles_;  ///< of the key, for errors
   std::shared_ptr<SourceTileStore> sourceTiles_;
   std::shared_ptr<SeriesShare> share_;
   std::unique_ptr<ServiceOpening> opening_;  ///< null where the data are no map service's

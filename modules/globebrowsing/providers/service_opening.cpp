@@ -24,7 +24,7 @@ ServiceOpening::ServiceOpening(CapabilitiesReference reference, std::shared_ptr<
 
 const Result<ServiceDescription>& ServiceOpening::describe() {
   if (!description_) {
-    description_ = describeService(filePath_, where_);
+    description_ = describeService(filePath_, where_, settings_);
     if (*description_ && (*description_)->reference) {
       const std::string& url = (*description_)->reference->url;
       const std::lock_guard lock(mutex_);
@@ -67,6 +67,10 @@ void ServiceOpening::end() {
   description_.reset();
   const std::lock_guard lock(mutex_);
   document_.reset();
+}
+
+std::string ServiceOpening::reason() const {
+  return description_ && *description_ ? (*description_)->reason : std::string();
 }
 
 std::vector<std::string> ServiceOpening::notes() const {

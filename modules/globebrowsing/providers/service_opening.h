@@ -33,13 +33,14 @@ class SeriesShare {
 /// has the capabilities fetched that it refers to. One thread at a time, a worker's, but for lastFailure().
 class ServiceOpening {
  public:
-  /// `filePath` and `where` as describeService takes them; `share` of a series.
+  /// `filePath`, `where` and `settings` as describeService takes them; `share` of a series.
   ServiceOpening(std::string filePath, std::string where, std::shared_ptr<Fetcher> fetcher,
-                 std::shared_ptr<SeriesShare> share)
+                 std::shared_ptr<SeriesShare> share, TileSettings settings = {})
       : filePath_(std::move(filePath)),
         where_(std::move(where)),
         fetcher_(std::move(fetcher)),
-        share_(std::move(share)) {}
+        share_(std::move(share)),
+        settings_(std::move(settings)) {}
   /// Of a layer of capabilities that are there.
   ServiceOpening(CapabilitiesReference reference, std::shared_ptr<CapabilitiesDocument> document);
 
@@ -56,6 +57,8 @@ class ServiceOpening {
   [[nodiscard]] const std::shared_ptr<CapabilitiesDocument>& document() const { return document_; }
   /// Why capabilities are waited for, if they are. From any thread.
   [[nodiscard]] std::optional<Error> lastFailure() const;
+  /// Where the data are GDAL's business: why.
+  [[nodiscard]] std::string reason() const;
   /// Gives up what it has read, once the service is known.
   void end();
   /// What the description says and is not heeded, for the log.
@@ -68,6 +71,7 @@ class ServiceOpening {
   std::string where_;
   std::shared_ptr<Fetcher> fetcher_;
   std::shared_ptr<SeriesShare> share_;
+  TileSettings settings_;
   std::optional<Result<ServiceDescription>> description_;
   mutable std::mutex mutex_;  ///< of document_'s changes, and of reading it elsewhere
   std::shared_ptr<CapabilitiesDocument> document_;

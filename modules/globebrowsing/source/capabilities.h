@@ -101,6 +101,10 @@ struct CapabilitiesLayer {
   int fixedWidth = 0;  ///< pixels; 0: any
   int fixedHeight = 0;
   bool isWholeOnly = false;  ///< no parts of its extent (WMS: noSubsets)
+  /// Its values are no colours of 8 bits, and can be had as they are (ArcGIS's exportImage).
+  bool hasValues = false;
+  int valueBands = 0;              ///< of those; 0: not said
+  std::optional<double> noData{};  ///< of those
 
   [[nodiscard]] const LayerDimension* timeDimension() const;
 };

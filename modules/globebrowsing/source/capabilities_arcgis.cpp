@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -169,6 +170,14 @@ Capabilities readCache(const Json& document, Capabilities result, CapabilitiesLa
   return result;
 }
 
+/// Image services say what their pixels are; those of more than 8 bits are made into pictures only when asked for one.
+void readValues(const Json& document, CapabilitiesLayer& layer) {
+  constexpr std::array<std::string_view, 7> wide{"S8", "U16", "S16", "U32", "S32", "F32", "F64"};
+  layer.hasValues = std::find(wide.begin(), wide.end(), stringAt(document, "pixelType")) != wide.end();
+  layer.valueBands = sizeAt(document, "bandCount", 0);
+  layer.noData = numberAt(document, "noDataValue");
+}
+
 Capabilities readMaps(const Json& document, Capabilities result, const CapabilitiesLayer& whole, bool isImage,
                       const std::string& base) {
   result.mapAddress = base + (isImage ? "/exportImage" : "/export");
@@ -182,6 +191,9 @@ Capabilities readMaps(const Json& document, Capabilities result, const Capabilit
     all.crs = all.crs.with({"EPSG:4326", "EPSG:3857"});  // it projects, as asked
   }
   all.formats = {"png32", "jpgpng", "jpg", "png"};
+  if (isImage) {
+    readValues(document, all);
+  }
   const std::string operations = stringAt(document, "capabilities");
   if (stringAt(document, "type").ends_with("Layer")) {
     all.obstacle = "it is a layer of a service, whose own address is to be given";

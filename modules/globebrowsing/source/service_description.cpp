@@ -47,33 +47,39 @@ struct Source {
   std::string filePath;
   std::string where;
   int nesting = 0;
+  TileSettings settings{};
 };
 
 Result<ServiceDescription> describe(const Source& source);
 
 Result<ServiceDescription> describeVrt(const std::string& content, const Source& source, const std::string& folder) {
-  auto wrapper = readVrtWrapper(content, source.where);
-  if (!wrapper) {
-    return tl::make_unexpected(std::move(wrapper.error()));
+  auto read = readVrtWrapper(content, source.where);
+  if (!read) {
+    return tl::make_unexpected(std::move(read.error()));
   }
   ServiceDescription result;
-  result.reason = "the VRT does more than pass a service's bands on";
-  if (!*wrapper) {
+  result.reason = std::move(read->reason);
+  if (!read->wrapper) {
     return result;
   }
-  const std::string& inner = (*wrapper)->source;
+  const VrtWrapper& wrapper = *read->wrapper;
+  const std::string& inner = wrapper.source;
   const bool isFile = !isDocument(inner) && inner.find(':') == std::string::npos;
   const std::string path =
-      isFile && (*wrapper)->isRelative ? (std::filesystem::path(folder) / inner).lexically_normal().string() : inner;
-  auto described = describe({path, isFile ? path : source.where, source.nesting + 1});
+      isFile && wrapper.isRelative ? (std::filesystem::path(folder) / inner).lexically_normal().string() : inner;
+  auto described = describe({path, isFile ? path : source.where, source.nesting + 1, source.settings});
+  if (described && described->reference && (wrapper.declaresNoData || wrapper.scale || wrapper.offset)) {
+    result.reason = "the VRT says of a layer of capabilities what its values mean";
+    return result;
+  }
   if (!described || !described->service) {
     return described;
   }
-  std::optional<TileService> service = wrapped(**wrapper, std::move(*described->service));
-  if (service) {
-    result.service = std::move(service);
-    result.reason.clear();
+  result.service = wrapped(wrapper, std::move(*described->service));
+  if (result.service) {
     result.notes = std::move(described->notes);
+  } else {
+    result.reason = "the VRT shows its service elsewhere than it is";
   }
   return result;
 }
@@ -270,7 +276,7 @@ Result<ServiceDescription> describe(const Source& source) {
     return describeGetMap(repairedUrl(std::string_view(text).substr(4)), source.where);
   }
   if (isUrlTemplate(text)) {
-    auto service = meridian::globebrowsing::serviceOf(UrlTemplate{text, {}, source.where});
+    auto service = meridian::globebrowsing::serviceOf(templateOf(text, source.where, source.settings));
     if (!service) {
       return tl::make_unexpected(std::move(service.error()));
     }
@@ -282,7 +288,8 @@ Result<ServiceDescription> describe(const Source& source) {
     return result;
   }
   if (const std::optional<std::string> content = documentIn(text)) {
-    return describeDocument(*content, {text, text, source.nesting}, std::filesystem::path(text).parent_path().string());
+    return describeDocument(*content, {text, text, source.nesting, source.settings},
+                            std::filesystem::path(text).parent_path().string());
   }
   result.reason = "it is no description of a map service";
   return result;
@@ -290,8 +297,9 @@ Result<ServiceDescription> describe(const Source& source) {
 
 }  // namespace
 
-Result<ServiceDescription> describeService(const std::string& filePath, const std::string& where) {
-  return describe({filePath, where, 0});
+Result<ServiceDescription> describeService(const std::string& filePath, const std::string& where,
+                                           const TileSettings& settings) {
+  return describe({filePath, where, 0, settings});
 }
 
 bool mayHaveTimes(const std::string& filePath) {

@@ -6,6 +6,7 @@
 
 #include "globebrowsing/source/capabilities.h"
 #include "globebrowsing/source/tile_service.h"
+#include "globebrowsing/source/tile_settings.h"
 #include "host/api/error.h"
 
 namespace meridian::globebrowsing {
@@ -34,8 +35,10 @@ struct ServiceDescription {
 /// - the same for a WMS: "WMS:URL,layer=...,style=...,crs=...", and a GDAL_WMS document that has a GetCapabilitiesUrl;
 /// - the address of an ArcGIS service: ".../MapServer?f=json", ".../ImageServer?f=json".
 /// `filePath` is absolute where it is a file. Reads that file and, of a VRT, its sibling, so call it on a worker; asks
-/// no server. Errors: a description of ours with something wrong in it. What is not ours is no error.
-[[nodiscard]] Result<ServiceDescription> describeService(const std::string& filePath, const std::string& where);
+/// no server. `settings` are what the layer says of a URL template's tiles; their encoding is not seen to here.
+/// Errors: a description of ours with something wrong in it. What is not ours is no error.
+[[nodiscard]] Result<ServiceDescription> describeService(const std::string& filePath, const std::string& where,
+                                                         const TileSettings& settings = {});
 
 /// Whether that is a layer of capabilities and no time of it is chosen, as far as the text itself tells: files are not
 /// read.

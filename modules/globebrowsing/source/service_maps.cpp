@@ -148,15 +148,13 @@ Result<QueryParameters> mapParameters(const Capabilities& capabilities, const Ca
   return parameters;
 }
 
-/// ArcGIS's export operations (REST API, "Export Map" and "Export Image").
-Result<QueryParameters> exportParameters(const CapabilitiesLayer& layer, const LayerChoices& choices,
-                                         const MapPlace& place, const std::string& where) {
+/// ArcGIS's export operations (REST API, "Export Map" and "Export Image"), without what the picture is to be like.
+QueryParameters exportParameters(const CapabilitiesLayer& layer, const LayerChoices& choices, const MapPlace& place,
+                                 const std::string& where) {
   QueryParameters parameters{{"bbox", "{West},{South},{East},{North}"}, {"size", "{Width},{Height}"}};
   const std::string code = place.name.substr(place.name.find(':') + 1);
   parameters.emplace_back("bboxSR", percentEncoded(code));
   parameters.emplace_back("imageSR", percentEncoded(code));
-  parameters.emplace_back("format", choices.format.empty() ? "png32" : percentEncoded(choices.format));
-  parameters.emplace_back("transparent", choices.isTransparent ? "true" : "false");
   if (!layer.identifier.empty() && layer.identifier != "0:image") {
     parameters.emplace_back("layers", "show:" + percentEncoded(layer.identifier));
   }
@@ -175,11 +173,32 @@ Result<QueryParameters> exportParameters(const CapabilitiesLayer& layer, const L
   return parameters;
 }
 
+QueryParameters picture(const LayerChoices& choices) {
+  return {{"format", choices.format.empty() ? "png32" : percentEncoded(choices.format)},
+          {"transparent", choices.isTransparent ? "true" : "false"}};
+}
+
+/// The first band as it is stored: every other format than TIFF brings it to 8 bits, or is none of GDAL's.
+QueryParameters values(const CapabilitiesLayer& layer) {
+  QueryParameters parameters{{"format", "tiff"}, {"pixelType", "F32"}};
+  if (layer.valueBands > 1) {
+    parameters.emplace_back("bandIds", "0");
+  }
+  return parameters;
+}
+
+TileUrl exportAddress(const Capabilities& capabilities, const QueryParameters& parameters,
+                      const QueryParameters& likeness) {
+  return TileUrl::cut(withParameters(withParameters(capabilities.mapAddress, parameters), likeness),
+                      windowPlaceholders());
+}
+
 Result<TileUrl> addressOf(const Capabilities& capabilities, const CapabilitiesLayer& layer, const LayerChoices& choices,
                           const MapPlace& place) {
-  const bool isExport = capabilities.kind == CapabilitiesKind::ArcGis;
-  auto parameters = isExport ? exportParameters(layer, choices, place, capabilities.url)
-                             : mapParameters(capabilities, layer, choices, place);
+  if (capabilities.kind == CapabilitiesKind::ArcGis) {
+    return exportAddress(capabilities, exportParameters(layer, choices, place, capabilities.url), picture(choices));
+  }
+  auto parameters = mapParameters(capabilities, layer, choices, place);
   if (!parameters) {
     return tl::make_unexpected(std::move(parameters.error()));
   }
@@ -249,6 +268,13 @@ Result<TileService> mapsOf(const Capabilities& capabilities, const CapabilitiesL
     return tl::make_unexpected(std::move(set.error()));
   }
   service.url = TileUrl::bind(std::move(*address), service.matrices);
+  if (layer.hasValues && choices.format.empty()) {
+    constexpr double lowestFloat = -3.4028234663852886e38;  // Esri's, where a service names no value of its own
+    service.noData = layer.noData.value_or(lowestFloat);
+    service.heightUrl = TileUrl::bind(
+        exportAddress(capabilities, exportParameters(layer, choices, *place, capabilities.url), values(layer)),
+        service.matrices);
+  }
   return service;
 }
 

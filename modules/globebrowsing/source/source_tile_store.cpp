@@ -190,7 +190,9 @@ class SourceTileStore::State : public std::enable_shared_from_this<State> {
  private:
   EntryPointer attachOne(const Request& request, const TileAddress& tile, Wanter& wanter, Aftermath& after) {
     const TileMatrix& matrix = request.service->matrices[tile.matrix];
-    FetchRequest fetch{request.service->url(tile), request.service->headers, request.priority};
+    const bool isOfHeights = request.kind == PixelKind::Heights && request.service->heightUrl;
+    FetchRequest fetch{isOfHeights ? request.service->heightUrl(tile) : request.service->url(tile),
+                       request.service->headers, request.priority};
     fetch.emptyStatuses = request.service->emptyStatuses;
     std::string key = keyOf(*request.service, request.kind, matrix, fetch);
     EntryPointer& entry = entries_[key];

@@ -61,11 +61,55 @@ Result<void> checkMatrix(const Image& image, const TileService& service, std::si
   assert(matrix < service.matrices.size());
   const TileMatrix& expected = service.matrices[matrix];
   if (image.width != expected.tileWidth || image.height != expected.tileHeight) {
+    const bool isSquare = image.width == image.height;
     return failure(fmt::format("the tile has {} x {} pixels in place of {} x {}", image.width, image.height,
                                expected.tileWidth, expected.tileHeight),
-                   service.where, "correct the description's block or tile size");
+                   service.where,
+                   service.isSizeGiven && isSquare
+                       ? fmt::format("write Tiles = {{ PixelSize = {} }} in the layer", image.width)
+                       : "correct the description's block or tile size");
   }
   return {};
+}
+
+/// Whether a tile has the one column and row more that an ArcGIS elevation cache does not announce.
+template <class Image>
+bool sharesEdges(const Image& image, TileFormat format, const TileMatrix& matrix) {
+  return (format == TileFormat::Lerc || format == TileFormat::Lerc1) && image.width == matrix.tileWidth + 1 &&
+         image.height == matrix.tileHeight + 1;
+}
+
+/// Esri's own client puts the first of 257 samples on the west edge of the tile and the last on the east edge
+/// (ElevationTile of the ArcGIS API for JavaScript), and interpolates between them. A matrix has pixels, whose values
+/// are those in their middles: there that interpolation is the mean of four. To leave the last ones out instead would
+/// move everything half a pixel to the southeast. Next to a hole the mean is of those that are there.
+DecodedHeights inMiddles(const DecodedHeights& corners) {
+  DecodedHeights tile{corners.width - 1, corners.height - 1, {}};
+  const auto across = static_cast<std::size_t>(corners.width);
+  tile.metres.reserve(static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height));
+  for (std::size_t row = 0; row + 1 < static_cast<std::size_t>(corners.height); ++row) {
+    for (std::size_t column = 0; column + 1 < across; ++column) {
+      const float* corner = corners.metres.data() + row * across + column;
+      float sum = 0.0F;
+      int count = 0;
+      for (const float value : {corner[0], corner[1], corner[across], corner[across + 1]}) {
+        sum += std::isnan(value) ? 0.0F : value;
+        count += std::isnan(value) ? 0 : 1;
+      }
+      tile.metres.push_back(count == 0 ? nothing : sum / static_cast<float>(count));
+    }
+  }
+  return tile;
+}
+
+DecodedColours withoutLast(const DecodedColours& shared) {
+  DecodedColours tile{shared.width - 1, shared.height - 1, {}};
+  const std::size_t bytes = 4 * static_cast<std::size_t>(tile.width);
+  for (int row = 0; row < tile.height; ++row) {
+    const std::uint8_t* first = shared.rgba.data() + static_cast<std::size_t>(row) * (bytes + 4);
+    tile.rgba.insert(tile.rgba.end(), first, first + bytes);
+  }
+  return tile;
 }
 
 void makeNoDataTransparent(DecodedImage& image, const TileService& service) {
@@ -205,6 +249,9 @@ Result<DecodedColours> decodeColours(std::span<const std::uint8_t> bytes, const 
   if (!image) {
     return tl::make_unexpected(std::move(image.error()));
   }
+  if (sharesEdges(image->tile, format, service.matrices[matrix])) {
+    image->tile = withoutLast(image->tile);
+  }
   if (auto fits = checkMatrix(image->tile, service, matrix); !fits) {
     return tl::make_unexpected(std::move(fits.error()));
   }
@@ -222,6 +269,9 @@ Result<DecodedHeights> decodeHeights(std::span<const std::uint8_t> bytes, const 
                                                       : heightsOfPacked(bytes, format, service);
   if (!tile) {
     return tile;
+  }
+  if (sharesEdges(*tile, format, service.matrices[matrix])) {
+    tile = inMiddles(*tile);
   }
   if (auto fits = checkMatrix(*tile, service, matrix); !fits) {
     return tl::make_unexpected(std::move(fits.error()));

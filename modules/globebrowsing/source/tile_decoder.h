@@ -37,6 +37,10 @@ inline constexpr std::int64_t mostTilePixels = std::int64_t{1} << 24;
 /// BMP, LERC; which, its first bytes say. Grey, grey with alpha, RGB, RGBA, palettes; 16 bits are brought to 8. With
 /// isNoDataTransparent, pixels whose bands are all noData get alpha 0.
 ///
+/// A LERC tile may be one larger than its matrix each way, as those of Esri's elevation caches are: points on the
+/// corners of pixels, the last column and row shared with the neighbours. Heights are then those in the middle of the
+/// pixels; of colours the last column and row are left out.
+///
 /// Empty where the service answers with an exception (OGC XML, ArcGIS JSON, a page in HTML) and isExceptionEmpty says
 /// what that means. Errors: an exception otherwise, quoted; a format that is not read; damaged or truncated data; a
 /// size other than the matrix's; beyond the limits above. No input crashes it. Safe from any thread.

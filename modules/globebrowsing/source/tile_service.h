@@ -58,6 +58,8 @@ struct TileService {
   double north = 0.0;
   /// The address of a tile. Safe from any thread.
   std::function<std::string(const TileAddress&)> url;
+  /// Of a tile as stored values, for heights, where `url` gives a picture made from them; empty: `url`.
+  std::function<std::string(const TileAddress&)> heightUrl{};
   std::vector<std::string> headers{};   ///< to be sent along
   std::vector<int> emptyStatuses{404};  ///< that mean "nothing there"
   bool isExceptionEmpty = false;        ///< an error document with status 200 also means "nothing there"
@@ -68,6 +70,8 @@ struct TileService {
   std::optional<double> heightScale{};   ///< metres for one unit of a stored height
   std::optional<double> heightOffset{};  ///< metres
   std::string attribution{};
+  /// The tiles' size is what the layer's Tiles.PixelSize says, or a guess: nothing else tells it (URL templates).
+  bool isSizeGiven = false;
 };
 
 }  // namespace meridian::globebrowsing

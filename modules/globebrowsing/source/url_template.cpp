@@ -66,7 +66,39 @@ bool namesTile(const TileUrl& url) {
          url.has(UrlPart::West);
 }
 
+/// "@2x" before the extension: web maps' way of naming tiles for dense screens, of 512 pixels.
+bool isForDenseScreens(const std::string& address) {
+  const std::string path = lowerCase(withoutQuery(address));
+  const std::size_t at = path.rfind("@2x");
+  return at != std::string::npos && path.find('/', at) == std::string::npos &&
+         (at + 3 == path.size() || path[at + 3] == '.');
+}
+
+Result<bool> isGeodeticOf(const UrlTemplate& description, const std::string& where) {
+  const bool asksDegrees = containsIgnoringCase(description.address, "{bbox-epsg-4326}");
+  const bool asksMetres = containsIgnoringCase(description.address, "{bbox-epsg-3857}");
+  const bool isGeodetic = description.isGeodetic.value_or(asksDegrees);
+  if (isGeodetic ? asksMetres : asksDegrees) {
+    return failure("the address asks for another projection than that of the tiles", where,
+                   "write {bbox} into it, or give the projection that its {bbox-epsg-...} names");
+  }
+  return isGeodetic;
+}
+
 }  // namespace
+
+UrlTemplate templateOf(const std::string& address, const std::string& where, const TileSettings& settings) {
+  UrlTemplate description;
+  description.address = address;
+  description.where = where;
+  description.isGeodetic = settings.isGeodetic;
+  description.countsFromSouth = settings.countsFromSouth.value_or(false);
+  description.tileSize = settings.pixelSize.value_or(isForDenseScreens(address) ? 512 : description.tileSize);
+  description.firstLevel = settings.firstLevel.value_or(description.firstLevel);
+  description.lastLevel = settings.lastLevel.value_or(description.lastLevel);
+  description.extentDegrees = settings.extentDegrees;
+  return description;
+}
 
 bool isUrlTemplate(const std::string& text) {
   return text.find("://") != std::string::npos && text.find('{') != std::string::npos &&
@@ -86,12 +118,16 @@ Result<TileService> serviceOf(const UrlTemplate& description) {
     return failure("the levels or the size of the tiles make no sense", service.where,
                    "give levels of 0 to 30, and tiles of 1 to 8192 pixels");
   }
-  const bool isGeodetic = description.isGeodetic || containsIgnoringCase(description.address, "{bbox-epsg-4326}");
-  const MapCrs crs = *MapCrs::of(isGeodetic ? "CRS:84" : "EPSG:3857", service.where);  // both are known
+  const Result<bool> isGeodetic = isGeodeticOf(description, service.where);
+  if (!isGeodetic) {
+    return tl::make_unexpected(isGeodetic.error());
+  }
+  const MapCrs crs = *MapCrs::of(*isGeodetic ? "CRS:84" : "EPSG:3857", service.where);  // both are known
   const Extent world = *crs.fromDegrees({-180.0, -90.0, 180.0, 90.0});
   service.name = description.name;
   service.crs = crs.definition();
   service.attribution = description.attribution;
+  service.isSizeGiven = true;
   std::vector<TileMatrix> matrices;
   std::vector<std::int64_t> rowCounts;
   for (int level = description.lastLevel; level >= description.firstLevel; --level) {
@@ -102,13 +138,17 @@ Result<TileService> serviceOf(const UrlTemplate& description) {
     matrix.left = world.west;
     matrix.top = world.north;
     matrix.lastRow = (std::int64_t{1} << level) - 1;
-    matrix.lastColumn = (isGeodetic ? 2 : 1) * (matrix.lastRow + 1) - 1;
+    matrix.lastColumn = (*isGeodetic ? 2 : 1) * (matrix.lastRow + 1) - 1;
     matrix.pixelWidth = (world.north - world.south) / static_cast<double>(matrix.lastRow + 1) / description.tileSize;
     matrix.pixelHeight = matrix.pixelWidth;
     matrices.push_back(matrix);
   }
-  const Extent extent = crs.fromDegrees(description.extentDegrees.value_or(Extent{-180.0, -90.0, 180.0, 90.0})).value();
-  if (auto set = setMatrices(service, std::move(matrices), extent); !set) {
+  const auto extent = crs.fromDegrees(description.extentDegrees.value_or(Extent{-180.0, -90.0, 180.0, 90.0}));
+  if (!extent) {
+    return failure("the extent is no place of the map", service.where,
+                   "give west, south, east and north in degrees, within -180, -90, 180, 90");
+  }
+  if (auto set = setMatrices(service, std::move(matrices), *extent); !set) {
     return tl::make_unexpected(std::move(set.error()));
   }
   for (const TileMatrix& matrix : service.matrices) {

@@ -6,6 +6,7 @@
 
 #include "globebrowsing/source/map_crs.h"
 #include "globebrowsing/source/tile_service.h"
+#include "globebrowsing/source/tile_settings.h"
 
 namespace meridian::globebrowsing {
 
@@ -21,9 +22,9 @@ namespace meridian::globebrowsing {
 struct UrlTemplate {
   std::string address;
   std::string name{};
-  std::string where{};  ///< where it was written, for errors; empty: the address
-  bool isGeodetic = false;
-  bool countsFromSouth = false;  ///< {y} is TMS's
+  std::string where{};               ///< where it was written, for errors; empty: the address
+  std::optional<bool> isGeodetic{};  ///< default: {bbox-epsg-4326} says so, or else it is not
+  bool countsFromSouth = false;      ///< {y} is TMS's
   int tileSize = 256;
   int firstLevel = 0;
   int lastLevel = 19;
@@ -32,9 +33,15 @@ struct UrlTemplate {
   std::string attribution{};
 };
 
+/// The template of an address, as a layer's settings have it. Where they give no size, tiles of an address that ends in
+/// "@2x" (before its extension) have 512 pixels.
+[[nodiscard]] UrlTemplate templateOf(const std::string& address, const std::string& where,
+                                     const TileSettings& settings);
+
 /// Whether the text is an address with the places of a tile.
 [[nodiscard]] bool isUrlTemplate(const std::string& text);
-/// Errors: no places, or not all; levels or sizes that make no tiles; an extent off the map.
+/// Errors: no places, or not all; levels or sizes that make no tiles; an extent off the map; a {bbox-epsg-...} of
+/// another projection.
 [[nodiscard]] Result<TileService> serviceOf(const UrlTemplate& description);
 
 }  // namespace meridian::globebrowsing

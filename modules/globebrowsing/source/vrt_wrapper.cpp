@@ -14,8 +14,11 @@ struct Band {
   std::string file;
   bool isRelative = false;
   int number = 1;
-  bool isAlphaFromNoData = false;  ///< 255 wherever there are data
-  std::optional<double> noData{};
+  bool isAlphaFromNoData = false;    ///< 255 wherever there are data
+  std::optional<double> noData{};    ///< of the source's values, which are not copied
+  std::optional<double> declared{};  ///< NoDataValue: of the band's own values
+  std::optional<double> scale{};
+  std::optional<double> offset{};
   std::array<double, 4> from{};  ///< x, y, width, height
   std::array<double, 4> to{};
 };
@@ -37,6 +40,21 @@ bool isMaskTable(const std::string& table) {
     plain += c == ' ' ? "" : std::string(1, c);
   }
   return plain == "0:0,1:255,255:255";
+}
+
+/// What the band says of its own values. False where it is more than a service can say.
+bool readMeaning(const pugi::xml_node& node, Band& band) {
+  band.scale = number(text(node, "Scale"));
+  band.offset = number(text(node, "Offset"));
+  band.declared = number(text(node, "NoDataValue"));
+  if (band.declared && band.noData && *band.declared != *band.noData) {
+    return false;  // one value becomes another
+  }
+  if (boolean(text(node, "HideNoDataValue")).value_or(false)) {
+    band.declared.reset();
+    band.noData.reset();  // it is replaced by itself, and shown
+  }
+  return true;
 }
 
 /// Nothing: the band is made in a way that is not ours.
@@ -85,7 +103,7 @@ std::optional<Band> readBand(const pugi::xml_node& node) {
       band.noData = 0.0;
     }
   }
-  if (band.isAlphaFromNoData && !band.noData) {
+  if ((band.isAlphaFromNoData && !band.noData) || !readMeaning(node, band)) {
     return std::nullopt;
   }
   return band;
@@ -95,9 +113,24 @@ bool isSamePlace(const Band& a, const Band& b) {
   return a.file == b.file && a.isRelative == b.isRelative && a.from == b.from && a.to == b.to;
 }
 
+/// Why a band cannot be one of the wrapper's, by what has been read before; empty: it can.
+std::string objection(const VrtWrapper& wrapper, const Band& first, const Band& band) {
+  if (wrapper.makesAlpha || !isSamePlace(first, band) ||
+      (!band.isAlphaFromNoData && band.number != wrapper.bands + 1)) {
+    return "the VRT does more than pass a service's bands on";
+  }
+  const bool isOther = wrapper.noData && band.noData && *wrapper.noData != *band.noData;
+  if (isOther || (!band.isAlphaFromNoData && first.declared != band.declared)) {
+    return "the VRT's bands differ in what is no data";
+  }
+  return {};
+}
+
 }  // namespace
 
-Result<std::optional<VrtWrapper>> readVrtWrapper(const std::string& content, const std::string& where) {
+Result<VrtDescription> readVrtWrapper(const std::string& content, const std::string& where) {
+  const auto leftToGdal = [](std::string reason) { return VrtDescription{std::nullopt, std::move(reason)}; };
+  const std::string doesMore = "the VRT does more than pass a service's bands on";
   auto document = XmlDocument::parse(content, where);
   if (!document) {
     return tl::make_unexpected(std::move(document.error()));
@@ -106,8 +139,8 @@ Result<std::optional<VrtWrapper>> readVrtWrapper(const std::string& content, con
   const std::vector<std::string> transform = split(text(root, "GeoTransform"), ", \n\t");
   const std::vector<pugi::xml_node> nodes = children(root, "VRTRasterBand");
   if (!isNamed(root, "VRTDataset") || !attribute(root, "subClass").empty() || transform.size() != 6 || nodes.empty() ||
-      child(root, "MaskBand") || child(root, "OverviewList")) {
-    return std::nullopt;
+      child(root, "MaskBand")) {
+    return leftToGdal(doesMore);
   }
   std::array<double, 6> affine{};
   for (std::size_t i = 0; i < affine.size(); ++i) {
@@ -117,26 +150,34 @@ Result<std::optional<VrtWrapper>> readVrtWrapper(const std::string& content, con
   std::optional<Band> first;
   for (const pugi::xml_node& node : nodes) {
     const std::optional<Band> band = readBand(node);
-    if (!band || wrapper.makesAlpha || (first && !isSamePlace(*first, *band)) ||
-        (!band->isAlphaFromNoData && band->number != wrapper.bands + 1)) {
-      return std::nullopt;
+    if (!band) {
+      return leftToGdal(doesMore);
     }
     first = first ? first : band;
+    if (std::string other = objection(wrapper, *first, *band); !other.empty()) {
+      return leftToGdal(std::move(other));
+    }
     wrapper.bands += band->isAlphaFromNoData ? 0 : 1;
     wrapper.makesAlpha = band->isAlphaFromNoData;
     wrapper.noData = band->noData ? band->noData : wrapper.noData;
   }
   const bool isUpright = affine[1] > 0 && affine[2] == 0 && affine[4] == 0 && affine[5] < 0;
   if (wrapper.bands == 0 || first->file.empty() || first->from[0] != 0 || first->from[1] != 0 || !isUpright) {
-    return std::nullopt;
+    return leftToGdal(doesMore);
   }
+  if (first->declared) {
+    wrapper.noData = first->declared;
+    wrapper.declaresNoData = true;
+  }
+  wrapper.scale = first->scale;
+  wrapper.offset = first->offset;
   wrapper.source = first->file;
   wrapper.isRelative = first->isRelative;
   wrapper.pixelWidth = affine[1] * first->to[2] / first->from[2];
   wrapper.pixelHeight = -affine[5] * first->to[3] / first->from[3];
   wrapper.left = affine[0] + affine[1] * first->to[0];
   wrapper.top = affine[3] + affine[5] * first->to[1];
-  return wrapper;
+  return VrtDescription{std::move(wrapper), {}};
 }
 
 std::optional<TileService> wrapped(const VrtWrapper& wrapper, TileService inner) {
@@ -156,6 +197,9 @@ std::optional<TileService> wrapped(const VrtWrapper& wrapper, TileService inner)
     inner.noData = wrapper.noData;
     inner.isNoDataTransparent = true;
   }
+  const bool hasMeaning = wrapper.scale || wrapper.offset;
+  inner.heightScale = hasMeaning ? std::optional(wrapper.scale.value_or(1.0)) : std::nullopt;
+  inner.heightOffset = hasMeaning ? std::optional(wrapper.offset.value_or(0.0)) : std::nullopt;
   return inner;
 }
 

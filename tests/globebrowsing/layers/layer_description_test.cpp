@@ -39,6 +39,24 @@ TEST(LayerDescription, ReadsEveryKey) {
   EXPECT_EQ(read->blendMode, BlendMode::MultiplyMix);
 }
 
+TEST(LayerDescription, NotesKeysThatNobodyKnows) {
+  const auto notesOf = [](Fields fields) {
+    std::vector<std::string> notes;
+    for (const Error& note : unknownLayerKeys(requestFor(tableOf(std::move(fields))))) {
+      notes.push_back(note.message());
+    }
+    return notes;
+  };
+  const Value known = tableOf({{"Encoding", "Terrarium"}, {"PixelSize", 512}});
+  EXPECT_TRUE(notesOf({{"Identifier", "a"}, {"FilePath", "a"}, {"Tiles", known}}).empty());
+  // Those of the rasters that a series consists of are known to it.
+  EXPECT_TRUE(notesOf({{"Type", "TemporalTileProvider"}, {"HeightScale", 2}, {"Tiles", known}}).empty());
+  const auto notes = notesOf({{"FilePath", "a"}, {"Tiles", tableOf({{"PixelSzie", 512}})}});
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_THAT(notes[0], testing::HasSubstr("unknown key PixelSzie, did you mean PixelSize"));
+  EXPECT_THAT(notes[0], testing::HasSubstr("earth.asset:12: Layer.Tiles"));
+}
+
 TEST(LayerDescription, DefaultsAreTheFormatsDefaults) {
   const Value table = tableOf({{"Identifier", "a"}, {"FilePath", "a.tif"}});
   const Result<LayerDescription> read = readLayer(requestFor(table), LayerGroupId::HeightLayers, BlendMode::Color);

@@ -84,6 +84,21 @@ TEST_F(LayerTableTest, PathsHoldAnywhere) {
             "/data/a.tif");
 }
 
+TEST_F(LayerTableTest, WhatWasSaidOfTilesIsWritten) {
+  const Layer& layer = add({{"Identifier", "L"},
+                            {"FilePath", "https://h/{z}/{x}/{y}.png"},
+                            {"Tiles", tableOf({{"Encoding", "Terrarium"},
+                                               {"PixelSize", 512},
+                                               {"RowsFromSouth", true},
+                                               {"Extent", listOf({5.0, 45.0, 11.0, 48.5})}})}},
+                           "/data");
+  const std::string text = layer.table().toLua();
+  for (const char* part : {"Encoding = \"Terrarium\"", "PixelSize = 512", "RowsFromSouth = true", "48.5"}) {
+    EXPECT_THAT(text, testing::HasSubstr(part));
+  }
+  EXPECT_EQ(again(layer).table().find("Tiles")->toLua(), layer.table().find("Tiles")->toLua());
+}
+
 TEST_F(LayerTableTest, PathsInListsOfProvidersHoldAnywhere) {
   const Layer& layer =
       add({{"Identifier", "L"},

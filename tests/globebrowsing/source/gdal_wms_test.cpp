@@ -325,12 +325,12 @@ TEST(VrtWrapper, RealOnesWrapTheirSibling) {
   for (const std::string& file : files) {
     SCOPED_TRACE(file);
     auto read = readVrtWrapper(textOf(file), file);
-    ASSERT_TRUE(read && *read);
-    EXPECT_EQ((*read)->source, std::filesystem::path(file).stem().string() + ".wms");
-    EXPECT_TRUE((*read)->isRelative);
-    EXPECT_TRUE((*read)->makesAlpha);
-    EXPECT_EQ((*read)->noData, 0.0);
-    EXPECT_EQ((*read)->left, -180.0);
+    ASSERT_TRUE(read && read->wrapper);
+    EXPECT_EQ(read->wrapper->source, std::filesystem::path(file).stem().string() + ".wms");
+    EXPECT_TRUE(read->wrapper->isRelative);
+    EXPECT_TRUE(read->wrapper->makesAlpha);
+    EXPECT_EQ(read->wrapper->noData, 0.0);
+    EXPECT_EQ(read->wrapper->left, -180.0);
   }
 }
 
@@ -354,7 +354,7 @@ TEST(VrtWrapper, OnlyWhatPassesBandsOnIsOurs) {
   const auto shown = [&](const std::string& text) {
     const auto read = readVrtWrapper(text, "a.vrt");
     EXPECT_TRUE(read);
-    return read && *read ? wrapped(**read, inner) : std::nullopt;
+    return read && read->wrapper ? wrapped(*read->wrapper, inner) : std::nullopt;
   };
   const auto service = shown(vrt(plain, there, constant));
   ASSERT_TRUE(service);

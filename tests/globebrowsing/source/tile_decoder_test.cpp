@@ -5,6 +5,7 @@
 
 #include <Lerc_c_api.h>
 
+#include "picture_fixture.h"
 #include "service_fixture.h"
 
 namespace meridian::globebrowsing {
@@ -38,52 +39,6 @@ std::string errorOf(const Bytes& bytes, const TileService& service) {
   const auto tile = decodeColours(bytes, service, 0);
   EXPECT_FALSE(tile);
   return tile ? "" : tile.error().message();
-}
-
-/// A picture made by GDAL. `value` gives a band (from 0) at column and row.
-struct Picture {
-  const char* driver = "PNG";
-  int width = 16;
-  int height = 8;
-  int bands = 3;
-  GDALDataType type = GDT_Byte;
-  std::vector<std::string> options{};
-};
-Bytes makePicture(const Picture& picture, const std::function<double(int, int, int)>& value,
-                  const std::function<void(GDALDataset&)>& finish = {}) {
-  GDALAllRegister();
-  GDALDriver* memory = GetGDALDriverManager()->GetDriverByName("MEM");
-  const GDALDatasetUniquePtr source(
-      memory->Create("", picture.width, picture.height, picture.bands, picture.type, nullptr));
-  for (int band = 0; band < picture.bands; ++band) {
-    std::vector<double> values;
-    for (int row = 0; row < picture.height; ++row) {
-      for (int column = 0; column < picture.width; ++column) {
-        values.push_back(value(band, column, row));
-      }
-    }
-    EXPECT_EQ(source->GetRasterBand(band + 1)->RasterIO(GF_Write, 0, 0, picture.width, picture.height, values.data(),
-                                                        picture.width, picture.height, GDT_Float64, 0, 0, nullptr),
-              CE_None);
-  }
-  if (finish) {
-    finish(*source);
-  }
-  char** options = nullptr;
-  for (const std::string& option : picture.options) {
-    options = CSLAddString(options, option.c_str());
-  }
-  const std::string path = "/vsimem/picture";
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(picture.driver);
-  EXPECT_NE(driver, nullptr) << picture.driver;
-  GDALDatasetUniquePtr(driver->CreateCopy(path.c_str(), source.get(), FALSE, options, nullptr, nullptr)).reset();
-  CSLDestroy(options);
-  vsi_l_offset size = 0;
-  GByte* data = VSIGetMemFileBuffer(path.c_str(), &size, TRUE);
-  Bytes bytes(data, data + size);
-  VSIFree(data);
-  VSIUnlink((path + ".aux.xml").c_str());
-  return bytes;
 }
 
 double ramp(int band, int column, int row) {
@@ -275,6 +230,71 @@ TEST(TileDecoder, Lerc) {
   ASSERT_EQ(made.metres.size(), values.size());
   EXPECT_TRUE(std::isnan(made.metres[3]));
   EXPECT_FLOAT_EQ(made.metres[100], values[100]);
+}
+
+Bytes lercOf(const std::vector<float>& values, int width, int height) {
+  Bytes blob(65536);
+  unsigned int size = 0;
+  EXPECT_EQ(lerc_encode(values.data(), 6, 1, width, height, 1, 0, nullptr, 0.0, blob.data(), 65536, &size), 0U);
+  blob.resize(size);
+  return blob;
+}
+
+TEST(TileDecoder, PointsThatTilesShareBecomePixels) {
+  // A plane has in the middle of a pixel what it has there, whichever way it is sampled.
+  const auto plane = [](double x, double y) { return static_cast<float>(100.0 + 3.0 * x - 5.0 * y); };
+  std::vector<float> points;
+  for (int row = 0; row <= 8; ++row) {
+    for (int column = 0; column <= 16; ++column) {
+      points.push_back(plane(column, row));
+    }
+  }
+  const Bytes blob = lercOf(points, 17, 9);
+  const DecodedHeights made = heights(blob, serviceOfSize(16, 8));
+  ASSERT_EQ(made.width, 16);
+  ASSERT_EQ(made.metres.size(), 128U);
+  for (int row = 0; row < 8; ++row) {
+    for (int column = 0; column < 16; ++column) {
+      ASSERT_FLOAT_EQ(made.metres[static_cast<std::size_t>(row * 16 + column)], plane(column + 0.5, row + 0.5));
+    }
+  }
+  TileService holed = serviceOfSize(16, 8);
+  holed.noData = 100.0;  // the first point
+  EXPECT_FLOAT_EQ(heights(blob, holed).metres[0], plane(2.0 / 3.0, 2.0 / 3.0)) << "of the other three";
+  const DecodedColours picture = colours(blob, serviceOfSize(16, 8));
+  ASSERT_EQ(picture.rgba.size(), 4U * 128);
+  EXPECT_EQ(picture.rgba[4 * 17], plane(1, 1));
+  EXPECT_FALSE(decodeHeights(blob, serviceOfSize(15, 7), 0)) << "two more are an error";
+  EXPECT_FALSE(decodeHeights(blob, serviceOfSize(16, 9), 0));
+  const Bytes grey = makePicture({"PNG", 17, 9, 1}, ramp);
+  EXPECT_FALSE(decodeHeights(grey, serviceOfSize(16, 8), 0)) << "no LERC";
+}
+
+TEST(TileDecoder, ARealElevationTileIsThatOfItsMatrix) {
+  const std::string world = sharedData("tiles/lerc/world.lerc1");
+  MERIDIAN_NEEDS(world);
+  const DecodedHeights points = heights(bytesOf(world), serviceOfSize(257, 257));
+  const DecodedHeights pixels = heights(bytesOf(world), serviceOfSize(256, 256));
+  ASSERT_EQ(pixels.metres.size(), 256U * 256);
+  const auto highest = [](const DecodedHeights& tile) {
+    float most = 0.0F;
+    for (const float metres : tile.metres) {
+      most = metres > most ? metres : most;
+    }
+    return most;
+  };
+  EXPECT_GT(highest(pixels), 4000.0F);  // Tibet
+  EXPECT_LE(highest(pixels), highest(points));
+}
+
+TEST(TileDecoder, AnotherSizeNamesTheKeyThatTellsIt) {
+  TileService service = serviceOfSize(16, 16);
+  EXPECT_NE(errorOf(makePicture({"PNG", 32, 32, 3}, ramp), service).find("description"), std::string::npos);
+  service.isSizeGiven = true;
+  EXPECT_NE(errorOf(makePicture({"PNG", 32, 32, 3}, ramp), service).find("Tiles = { PixelSize = 32 }"),
+            std::string::npos);
+  EXPECT_EQ(errorOf(makePicture({"PNG", 32, 16, 3}, ramp), service).find("PixelSize"), std::string::npos)
+      << "no size would make it a square";
 }
 
 TEST(TileDecoder, TellsWhatIsWrong) {

@@ -127,6 +127,34 @@ inline TileAddress addressOf(const std::string& url) {
   return address;
 }
 
+/// Calls `prepare(wake)` until it says that nothing is missing, on this thread, which waits meanwhile.
+template <class Prepare>
+void prepareFully(Prepare&& prepare) {
+  // Kept alive by whoever wakes late.
+  struct Signal {
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool isWoken = false;
+  };
+  const auto signal = std::make_shared<Signal>();
+  while (!prepare([signal] {
+    const std::lock_guard lock(signal->mutex);
+    signal->isWoken = true;
+    signal->changed.notify_all();
+  })) {
+    std::unique_lock lock(signal->mutex);
+    signal->changed.wait(lock, [&] { return signal->isWoken; });
+    signal->isWoken = false;
+  }
+}
+
+/// What a task makes once it has what it needs.
+template <class Pixels>
+Result<Pixels> waitFor(const std::unique_ptr<PixelTask<Pixels>>& task) {
+  prepareFully([&](const std::function<void()>& wake) { return task->prepare(1.0, wake); });
+  return task->make({});
+}
+
 /// Serves what `texel(level, column, row)` says of pixels counted from the matrices' corner. Any request beyond the
 /// matrices' limits or the extent fails the test.
 class Served {
@@ -147,23 +175,7 @@ class Served {
   /// Of this test's thread, which waits.
   template <class Pixels>
   Result<Pixels> wait(std::unique_ptr<PixelTask<Pixels>> task) {
-    // Kept alive by whoever wakes late.
-    struct Signal {
-      std::mutex mutex;
-      std::condition_variable changed;
-      bool isWoken = false;
-    };
-    const auto signal = std::make_shared<Signal>();
-    while (!task->prepare(1.0, [signal] {
-      const std::lock_guard lock(signal->mutex);
-      signal->isWoken = true;
-      signal->changed.notify_all();
-    })) {
-      std::unique_lock lock(signal->mutex);
-      signal->changed.wait(lock, [&] { return signal->isWoken; });
-      signal->isWoken = false;
-    }
-    Result<Pixels> made = task->make({});
+    Result<Pixels> made = waitFor(task);
     flaw = task->flaw();
     return made;
   }
