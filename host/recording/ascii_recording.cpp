@@ -134,6 +134,7 @@ class AsciiReader {
 
   void readCamera(Words& words) {
     CameraEntry entry;
+    entry.line = lines_.number();
     entry.timestamp = timestamp(words);
     entry.simulationTime = Time(words.number("the simulation time"));
     entry.position.x = words.number("position x");

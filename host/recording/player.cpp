@@ -101,7 +101,9 @@ void Player::placeCamera() {
   const scene::Scene& scene = camera_->scene();
   const scene::SceneNode* anchor = scene.node(earlier.node);
   if (anchor == nullptr) {
-    return;  // removed by a script: the camera stays where it is until a node that exists comes
+    // A script may have removed it, or may yet add it.
+    tellTrouble(earlier, "is relative to '" + earlier.node + "', which is not in the scene: the camera stays");
+    return;
   }
   const navigation::Pose from = poseIn(earlier, scene, *anchor);
   const navigation::Pose to = poseIn(later, scene, *anchor);
@@ -109,7 +111,19 @@ void Player::placeCamera() {
   const double t = span > 0.0 ? std::clamp((elapsed_ - earlier.timestamp) / span, 0.0, 1.0) : 0.0;
   const navigation::Pose pose{glm::mix(from.position, to.position, t), glm::slerp(from.rotation, to.rotation, t)};
   if (const auto set = camera_->setPose(earlier.node, pose); !set) {
-    log::warning("the recording's camera at {} s cannot be used: {}", earlier.timestamp, set.error().message());
+    const bool isLater = camera_->setPose(earlier.node, from).has_value();
+    tellTrouble(isLater ? later : earlier, "cannot be used: " + set.error().message());
+    return;
+  }
+  trouble_.clear();
+}
+
+void Player::tellTrouble(const CameraEntry& entry, const std::string& why) {
+  const std::string line = entry.line > 0 ? fmt::format(" (line {})", entry.line) : std::string();
+  std::string trouble = fmt::format("the recording's camera at {} s{} {}", entry.timestamp, line, why);
+  if (trouble != trouble_) {
+    trouble_ = std::move(trouble);
+    log::warning("{}", trouble_);
   }
 }
 

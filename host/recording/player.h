@@ -38,6 +38,8 @@ class Player {
   Player(SessionRecording recording, navigation::Camera& camera, RunScript runScript);
   void runDueScripts();
   void placeCamera();
+  /// Why the camera cannot be placed: once, until it can again.
+  void tellTrouble(const CameraEntry& entry, const std::string& why);
 
   SessionRecording recording_;
   navigation::Camera* camera_;
@@ -46,6 +48,7 @@ class Player {
   Time startTime_;
   double elapsed_ = 0.0;
   std::size_t nextScript_ = 0;  ///< the first entry not yet looked at for scripts
+  std::string trouble_;         ///< told last; empty while the camera can be placed
 };
 
 }  // namespace meridian::recording

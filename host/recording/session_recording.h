@@ -24,6 +24,7 @@ struct CameraEntry {
   double scale = 1.0;                       ///< OpenSpace's camera scaling; kept, not used
   bool followsRotation = false;
   std::string node;
+  std::size_t line = 0;  ///< of its file, from 1; 0: not known, or of no file of lines
 };
 
 /// A script that ran at one moment.
