@@ -45,7 +45,8 @@ function(meridian_test NAME)
   if(TEST_LABELS)
     list(APPEND properties LABELS "${TEST_LABELS}")
   endif()
-  gtest_discover_tests(${NAME} DISCOVERY_MODE PRE_TEST PROPERTIES ${properties})
+  # Five seconds, the default, are little for a program that a busy machine reads from the disk for the first time.
+  gtest_discover_tests(${NAME} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 120 PROPERTIES ${properties})
 endfunction()
 
 # meridian_benchmark(NAME SOURCES... LINKS...): one Google Benchmark program, run by scripts/bench.

@@ -161,7 +161,8 @@ TEST_F(InterpolationTest, ComposesForEachStepAndNotForEachFrame) {
   }
   // To day 6.9: the steps of days 2 to 7.
   EXPECT_LE(store(globe).composedCount() - begun, 7 * (tiles + 4));
-  EXPECT_GE(store(globe).composedCount() - begun, 6 * tiles);
+  // A layer that was slow to open lets the roots be composed once without it.
+  EXPECT_GE(store(globe).composedCount() - begun, 6 * (tiles - 2));
 }
 
 TEST_F(InterpolationTest, IsSwitchedOffAndOn) {

@@ -16,7 +16,7 @@ class LayerLoadingTest : public GlobeTest {
   }
   /// Once the driver, whose own threads write its cache now and then, has closed what it had open.
   static bool comesDownTo(const char* folder, std::ptrdiff_t count) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (entries(folder) > count && std::chrono::steady_clock::now() < end) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
@@ -28,6 +28,7 @@ TEST_F(LayerLoadingTest, DisabledLayersTakeNoThreadFileOrRequest) {
   const std::string file = uniformRaster("c.tif", {10, 20, 30});
   RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({fileLayer("Shown", file)})}});
   ASSERT_TRUE(settle());
+  graphics_->programs().waitAll();
   const auto threads = entries("/proc/self/task");
   const auto files = entries("/proc/self/fd");
   const auto requested = statistics_.tiles.requested.load();

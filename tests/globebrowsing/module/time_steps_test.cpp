@@ -158,14 +158,10 @@ TEST_F(TimeStepsTest, SettingsThatChangeAllTheTimeDoNotHoldTimeUp) {
   ASSERT_TRUE(settle());
   Layer* layer = globe.layers().group(LayerGroupId::ColorLayers).find("M");
   time_ = dayOf(6);
-  bool arrived = false;
-  for (int n = 0; n < 400 && !arrived; ++n) {
-    layer->opacity.put(n % 2 == 0 ? 1.0 : 0.999);
-    frame();
-    arrived = seen() == std::vector<int>{6};
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  EXPECT_TRUE(arrived);
+  EXPECT_TRUE(framesUntil([&] {
+    layer->opacity.put(layer->opacity.get() < 1.0 ? 1.0 : 0.999);
+    return seen() == std::vector<int>{6};
+  }));
 }
 
 TEST_F(TimeStepsTest, GoesOnWithoutRoomForTwoTimes) {

@@ -148,7 +148,7 @@ TEST(HttpFetcher, WhatIsRejectedIsNotAskedAgainForAWhile) {
   FaultServer server;
   server.on("/exception", {.headers = {"Content-Type: text/xml"}, .body = "<ServiceException>no</ServiceException>"});
   NetworkOptions options = quickOptions();
-  options.cache.negativeLifetime = std::chrono::milliseconds(50);
+  options.cache.negativeLifetime = std::chrono::seconds(2);
   HttpFetcher fetcher(options);
   const FetchRequest request{.url = server.url("/exception")};
   const auto answer = ask(fetcher, request);
@@ -313,7 +313,7 @@ TEST(HttpFetcher, RetryAfterHoldsBackTheWholeHost) {
     return isBusy ? Reply{.status = 429, .headers = {"Retry-After: 3600"}} : Reply{.body = "good"};
   });
   NetworkOptions options = quickOptions();
-  options.retry.maximumRetryAfter = std::chrono::milliseconds(300);
+  options.retry.maximumRetryAfter = std::chrono::seconds(3);
   HttpFetcher fetcher(options);
   Asked first(fetcher, {.url = server.url("/a")});
   ASSERT_TRUE(eventually([&] { return first.pending().lastFailure().has_value(); }));

@@ -81,10 +81,18 @@ TEST_F(Programs, AreBuiltWhileFramesGoOnDrawingAndUploading) {
   const Texture texture = Texture::image2D(GL_RGBA8, 256, 256);
   const std::vector<std::uint8_t> texels(256 * 256 * 4, 7);
 
+  // With the driver's own cache they could all be there before a second frame.
+  std::promise<void> drawnTwice;
+  const std::shared_future<void> both = drawnTwice.get_future().share();
   std::vector<ProgramHandle> handles;
   for (int red = 100; red < 108; ++red) {
     ProgramDescription description = flat(red);
-    description.warmUp = warm;
+    description.warmUp = [both, isFirst = red == 100](GLuint program) {
+      if (isFirst) {
+        both.wait();
+      }
+      warm(program);
+    };
     handles.push_back(cache_->request(std::move(description)));
   }
   int frames = 0;
@@ -95,7 +103,9 @@ TEST_F(Programs, AreBuiltWhileFramesGoOnDrawingAndUploading) {
     drawOnce(*target, drawn);
     glFinish();
     cache_->endFrame();
-    ++frames;
+    if (++frames == 2) {
+      drawnTwice.set_value();
+    }
   }
   EXPECT_GT(frames, 1);
   cache_->waitAll();
