@@ -29,8 +29,8 @@ struct Words {
 };
 
 constexpr std::string_view footer =
-    "Without ASSET the default scene is shown. Without a display, or with --headless, one frame is drawn unless\n"
-    "--frames or --play says otherwise.\n"
+    "Without ASSET the default scene is shown. With --headless one frame is drawn unless --frames or --play says\n"
+    "otherwise, and likewise where no window can be opened and one of these, --output or --stats is given.\n"
     "\n"
     "Keys: F1 panels, Space pause, Esc quit. Mouse: left orbit, right or wheel zoom, middle tilt.\n"
     "Exit codes: 0 done, 1 failed at run time, 2 wrong usage, 3 assets had errors (with --validate).\n"
@@ -62,7 +62,9 @@ void declare(CLI::App& app, Words& words) {
   app.add_option("--record", words.record, "Record the session")->option_text("FILE");
   app.add_option("--frames", words.frames, "Fixed time step; stop after so many frames")->option_text("N");
   app.add_option("--fps", words.fps, "Fixed time step of 1/F seconds (default 60)")->option_text("F");
-  app.add_option("--settle", words.settle, "Before each frame wait until the view is complete, at most so long")
+  app.add_option("--settle", words.settle,
+                 "Before each frame wait until the view is complete, at most so long\n"
+                 "(default 10 for pictures that are written off screen, else 0)")
       ->option_text("SECONDS");
   app.add_option("--output", words.output, "Write a .png, a folder of them, or a video (.mp4 .mkv .mov .webm)")
       ->option_text("PATH");
@@ -158,8 +160,8 @@ Result<void> parseNumbers(const Words& words, Options& options) {
   }
   if (!words.settle.empty()) {
     options.settleSeconds = finiteNumber(words.settle);
-    if (!options.settleSeconds || *options.settleSeconds <= 0.0 || *options.settleSeconds > 86'400.0) {
-      return wrong("--settle", words.settle, "a number of seconds above 0, at most 86400");
+    if (!options.settleSeconds || *options.settleSeconds < 0.0 || *options.settleSeconds > 86'400.0) {
+      return wrong("--settle", words.settle, "a number of seconds from 0 to 86400");
     }
   }
   return {};
@@ -267,6 +269,20 @@ std::optional<std::string> emptyOption(const CLI::App& app) {
   return std::nullopt;
 }
 
+/// The library's own words for these name its types, not what is expected.
+std::string mismatchOf(const CLI::App& app, const std::string& message, std::span<const char* const> arguments) {
+  const std::string name = message.substr(0, message.find(':'));
+  const CLI::Option* option = app.get_option_no_throw(name);
+  if (option == nullptr) {
+    return message;
+  }
+  const auto given = std::count_if(arguments.begin(), arguments.end(), [&](const char* argument) {
+    return argument == name || std::string_view(argument).starts_with(name + "=");
+  });
+  return given > 1 ? fmt::format("{}: given {} times, expected once", name, given)
+                   : fmt::format("{}: expected {} after it, found nothing", name, option->get_option_text());
+}
+
 EarlyExit wrongUsage(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   return {ExitCode::WrongUsage, fmt::format("meridian: {}; see meridian --help\n", text)};
@@ -284,6 +300,10 @@ std::variant<Options, EarlyExit> parseOptions(std::span<const char* const> argum
     app.parse(std::move(reversed));
   } catch (const CLI::CallForHelp&) {
     return EarlyExit{ExitCode::Done, app.help()};
+  } catch (const CLI::ArgumentMismatch& error) {
+    return wrongUsage(mismatchOf(app, error.what(), arguments));
+  } catch (const CLI::ConversionError&) {
+    return wrongUsage("an option that takes no value has one: write it without '='");
   } catch (const CLI::ParseError& error) {
     return wrongUsage(error.what());
   }

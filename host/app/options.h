@@ -39,13 +39,14 @@ struct Options {
   std::optional<std::filesystem::path> record;
   std::optional<std::uint64_t> frames;  ///< at least 1
   std::optional<double> fps;            ///< above 0
-  std::optional<double> settleSeconds;  ///< above 0
+  std::optional<double> settleSeconds;  ///< at least 0; 0: never
   std::optional<std::filesystem::path> output;
   std::optional<std::filesystem::path> stats;
   bool validate = false;
   log::Level logLevel = log::Level::Info;
 
   static constexpr double defaultFps = 60.0;
+  static constexpr double defaultSettleSeconds = 10.0;  ///< of pictures that are written off screen
 
   /// Whether time runs by the frame (1 / fps each) instead of by the clock on the wall.
   [[nodiscard]] bool hasFixedStep() const { return headless || frames || fps || output; }

@@ -111,9 +111,7 @@ Result<Surface> openSurface(const Options& options) {
     return Surface{std::move(*window), raw};
   }
   if (!options.frames && !options.play && !options.output && !options.stats) {
-    Error error = window.error();
-    error.remedy = "set DISPLAY, or draw off screen, for example with --headless --output picture.png";
-    return tl::make_unexpected(std::move(error));
+    return tl::make_unexpected(window.error());
   }
   log::warning("there is no window ({}): drawing off screen, as with --headless", window.error().message());
   return openOffscreen();
@@ -163,6 +161,11 @@ class Show {
     session_ = std::move(*session);
     if (auto opened = openWriter(); !opened) {
       return opened;
+    }
+    if (options_.stats) {
+      if (auto opened = checkStatisticsFile(*options_.stats); !opened) {
+        return opened;
+      }
     }
     if (surface_.window != nullptr) {
       if (auto opened = openPanels(); !opened) {
@@ -247,6 +250,7 @@ class Show {
 };
 
 ExitCode validate(Application& application, const Options& options) {
+  application.scripts().neverWait();
   const AssetCheck check = checkAssets(application, options.assets);
   check.report();
   fmt::print("{}\n", check.line());

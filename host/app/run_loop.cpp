@@ -126,28 +126,40 @@ void RunLoop::present() {
   }
 }
 
+double RunLoop::settleSeconds() const {
+  const bool isPicture = options_.output.has_value() && parts_.window == nullptr;
+  return options_.settleSeconds.value_or(isPicture ? Options::defaultSettleSeconds : 0.0);
+}
+
 Result<void> RunLoop::drawUntilSettled(Clock::time_point begin) {
-  if (auto drawn = drawOnce(begin, parts_.session.deltaSeconds()); !drawn || !options_.settleSeconds) {
+  if (auto drawn = drawOnce(begin, parts_.session.deltaSeconds()); !drawn || settleSeconds() <= 0.0) {
     return drawn;
   }
   auto& figures = parts_.application.statistics().settled;
   const auto start = Clock::now();
-  Settled settled = parts_.renderer.settled();
+  const auto state = [this]() -> Settled {
+    if (parts_.session.hasWaitingScripts()) {
+      return {false, "a script waits for what it asked for"};
+    }
+    return parts_.renderer.settled();
+  };
+  Settled settled = state();
   // Without a window nobody sees what is not complete, and a software renderer would draw it with the cores that load.
   const bool isSeen = parts_.window != nullptr;
   bool isPending = false;
   // Where the ground is shows as it loads: a camera that was put below it is outside in the picture.
   while ((parts_.session.keepClear() || !settled.complete) && !isStopped() &&
-         millisecondsSince(start) < 1000.0 * *options_.settleSeconds) {
+         millisecondsSince(start) < 1000.0 * settleSeconds()) {
     std::this_thread::sleep_for(settlePause);
     if (isSeen) {
       graphics::WindowContext::pollEvents();
     }
+    parts_.session.resumeScripts();
     if (auto drawn = drawOnce(Clock::now(), 0.0, isSeen); !drawn) {
       return drawn;
     }
     isPending = !isSeen;
-    settled = parts_.renderer.settled();
+    settled = state();
   }
   if (isPending) {
     if (auto drawn = drawOnce(Clock::now(), 0.0); !drawn) {

@@ -48,6 +48,8 @@ class RunLoop {
   [[nodiscard]] Result<void> frame();
   [[nodiscard]] Result<void> drawOnce(Clock::time_point begin, double deltaSeconds, bool isDrawn = true);
   [[nodiscard]] Result<void> drawUntilSettled(Clock::time_point begin);
+  /// How long a frame may wait until it is complete; 0: it does not.
+  [[nodiscard]] double settleSeconds() const;
   [[nodiscard]] Result<void> writePicture();
   [[nodiscard]] glm::ivec2 pictureSize() const;
   [[nodiscard]] bool isStopped() const;

@@ -91,6 +91,16 @@ std::string statisticsReport(const Statistics& statistics, std::uint64_t peakRes
   return report.dump(2) + "\n";
 }
 
+Result<void> checkStatisticsFile(const std::filesystem::path& file) {
+  std::error_code ignored;
+  std::filesystem::create_directories(file.parent_path(), ignored);
+  // Appends, so that what is there stays until there is something new.
+  if (!std::ofstream(file, std::ios::binary | std::ios::app)) {
+    return failure("the figures cannot be written there", file.string(), "name a file in a folder that can be written");
+  }
+  return {};
+}
+
 Result<void> writeStatistics(const Statistics& statistics, const std::filesystem::path& file) {
   const std::string report = statisticsReport(statistics, peakResidentBytes());
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);

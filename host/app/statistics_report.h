@@ -28,6 +28,9 @@ struct Percentiles {
 /// The JSON object of `--stats`, with the keys of docs/command-line.md (Statistics), ended by a line break.
 [[nodiscard]] std::string statisticsReport(const Statistics& statistics, std::uint64_t peakResidentBytes);
 
+/// Before a run, so that it is not lost: makes the folder, and the file if there is none. Errors: it cannot be written.
+[[nodiscard]] Result<void> checkStatisticsFile(const std::filesystem::path& file);
+
 /// Writes the report to a file. Errors: the file cannot be created, the disk is full.
 [[nodiscard]] Result<void> writeStatistics(const Statistics& statistics, const std::filesystem::path& file);
 

@@ -65,7 +65,7 @@ WindowContext::WindowContext(GLFWwindow* window, WindowOptions options)
 Result<std::unique_ptr<WindowContext>> WindowContext::create(const WindowOptions& options) {
   if (glfwInit() == GLFW_FALSE) {
     return failure(fmt::format("no window can be opened ({})", lastGlfwError()), "GLFW",
-                   "set DISPLAY, or run with --headless");
+                   "set DISPLAY, or draw off screen, for example with --headless --output picture.png");
   }
   ++openWindows;
   setHints(options, 4, 5);

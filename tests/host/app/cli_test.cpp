@@ -131,9 +131,41 @@ TEST_F(CommandLine, OutputThatCannotBeWrittenFailsBeforeDrawing) {
 
 TEST_F(CommandLine, StatsThatCannotBeWrittenFail) {
   emptyScene();
-  const Outcome outcome = run("empty.asset --headless --size 8x8 --stats missing/stats.json");
+  write("file", "x");
+  // Before the run, not after it: this one would take its time.
+  const Outcome outcome = run("empty.asset --headless --size 8x8 --frames 1000000 --stats file/stats.json");
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_THAT(outcome.errors, HasSubstr("missing/stats.json"));
+  EXPECT_THAT(outcome.errors, HasSubstr("file/stats.json"));
+  EXPECT_EQ(run("empty.asset --headless --size 8x8 --stats new/folder/stats.json").code, 0);
+  EXPECT_TRUE(fs::exists(in("new/folder/stats.json")));
+}
+
+TEST_F(CommandLine, PicturesOffScreenWaitForTheirDataUnlessTold) {
+  emptyScene();
+  const auto framesSettled = [&](const std::string& arguments) {
+    EXPECT_EQ(run("empty.asset --headless --size 8x8 --stats s.json " + arguments).code, 0) << arguments;
+    return nlohmann::json::parse(readFile(in("s.json")))["settled"]["frames_settled"].get<int>();
+  };
+  EXPECT_EQ(framesSettled("--output a.png"), 1);
+  EXPECT_EQ(framesSettled("--output a.png --settle 0"), 0);
+  EXPECT_EQ(framesSettled(""), 0);
+  EXPECT_EQ(framesSettled("--settle 5"), 1);
+}
+
+TEST_F(CommandLine, ACameraOfARecordingThatCannotBeUsedIsToldOnceWithItsLine) {
+  emptyScene();
+  const std::string rest = " 0 0 0 1 0 0 0 1 F ";
+  write("gone.osrectxt", "OpenSpace_record/playback03.00A\ncamera 0 0" + rest + "Place\ncamera 1 1" + rest +
+                             "Nowhere\ncamera 2 2" + rest + "Place\n");
+  const Outcome gone = run("empty.asset --headless --size 8x8 --play gone.osrectxt --fps 20");
+  EXPECT_EQ(gone.code, 0);
+  EXPECT_THAT(gone.errors, HasSubstr("line 3) is relative to 'Nowhere', which is not in the scene"));
+  EXPECT_EQ(gone.errors.find("Nowhere"), gone.errors.rfind("Nowhere")) << gone.errors;
+  write("far.osrectxt", "OpenSpace_record/playback03.00A\ncamera 0 0" + rest + "Place\ncamera 1 1 1e300" +
+                            rest.substr(2) + "Place\ncamera 2 2" + rest + "Place\n");
+  const Outcome far = run("empty.asset --headless --size 8x8 --play far.osrectxt --fps 20");
+  EXPECT_THAT(far.errors, HasSubstr("line 3) cannot be used"));
+  EXPECT_EQ(far.errors.find("cannot be used"), far.errors.rfind("cannot be used")) << far.errors;
 }
 
 TEST_F(CommandLine, BadAssetsFailWithTheirPlace) {
