@@ -1,15 +1,13 @@
 #include "globebrowsing/capabilities_loader.h"
 
-#include <algorithm>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <utility>
 
-#include "globebrowsing/source/capabilities.h"
+#include <fmt/format.h>
+
+#include "globebrowsing/server_documents.h"
 #include "globebrowsing/source/document_file.h"
-#include "globebrowsing/source/service_asset.h"
-#include "globebrowsing/source/service_text.h"
 
 namespace meridian::globebrowsing {
 
@@ -18,92 +16,101 @@ namespace {
 /// Before every tile: somebody waits for it.
 constexpr double documentPriority = 1e9;
 
-/// What an asset can say of the layer: a table for each style.
-Result<std::vector<OfferedLayer::Style>> stylesOf(const Capabilities& capabilities, const CapabilitiesLayer& layer,
-                                                  const std::string& globe) {
-  std::vector<OfferedLayer::Style> styles;
-  const std::size_t count = std::max<std::size_t>(layer.styles.size(), 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    LayerChoices choices;
-    choices.style = i == 0 ? std::string() : layer.styles[i].identifier;
-    Result<LayerAsset> asset = assetOf(capabilities, layer, choices, {globe});
-    if (!asset) {
-      return tl::make_unexpected(std::move(asset.error()));
-    }
-    std::string name = layer.styles.empty()            ? "default"
-                       : layer.styles[i].title.empty() ? layer.styles[i].identifier
-                                                       : layer.styles[i].title;
-    styles.push_back({std::move(name), std::move(asset->table)});
-  }
-  return styles;
-}
-
-OfferedLayer offeredLayer(const Capabilities& capabilities, const CapabilitiesLayer& layer, const std::string& globe) {
-  OfferedLayer offered;
-  offered.name = layer.title.empty() ? layer.identifier : layer.title;
-  offered.obstacle = layer.obstacle;
-  offered.extent = layer.extent;
-  offered.times = layer.timeDimension() != nullptr ? layer.timeDimension()->values : std::string();
-  offered.attribution = creditText(layer.attribution.empty() ? capabilities.attribution : layer.attribution);
-  if (!offered.obstacle.empty()) {
-    return offered;
-  }
-  Result<std::vector<OfferedLayer::Style>> styles = stylesOf(capabilities, layer, globe);
-  if (!styles) {
-    offered.obstacle = styles.error().what;
-    return offered;
-  }
-  offered.styles = std::move(*styles);
-  offered.url = *offered.styles.front().table.find("FilePath")->string();
-  return offered;
-}
-
-/// All layers but headings.
-MapServers::Offer offerOf(const Fetched& document, const MapServer& server) {
-  if (document.body == nullptr) {
-    return failure("there are no capabilities at that address", server.url, "check the address");
-  }
-  return parseCapabilities(*document.body, server.url).map([&](const Capabilities& capabilities) {
-    std::vector<OfferedLayer> offered;
-    for (const CapabilitiesLayer& layer : capabilities.layers) {
-      if (!layer.identifier.empty()) {
-        offered.push_back(offeredLayer(capabilities, layer, server.globe));
-      }
-    }
-    return offered;
-  });
+FetchRequest requestFor(const ServerDocuments::Wanted& wanted) {
+  FetchRequest request;
+  request.url = wanted.url;
+  request.priority = documentPriority - static_cast<double>(wanted.number);  // in the order of the lists
+  request.maximumBytes = largestDocument;
+  request.emptyStatuses = {};
+  request.isPatient = false;
+  return request;
 }
 
 }  // namespace
 
-/// What workers do for a load: they begin the fetch, since the first of a program opens the cache on disk, and read
-/// what it brings.
-struct CapabilitiesLoader::Work {
-  std::mutex mutex;
-  std::optional<MapServers::Offer> offer;
-  std::unique_ptr<PendingFetch> fetch;
-  bool isGivenUp = false;
+/// What workers do for a load: they begin the fetches, since the first of a program opens the cache on disk, and read
+/// what these bring.
+struct CapabilitiesLoader::Work : std::enable_shared_from_this<Work> {
+  Work(WorkerPool& pool, std::shared_ptr<Fetcher> asked, MapServer named)
+      : workers(pool), fetcher(std::move(asked)), server(std::move(named)), documents(server) {}
 
-  void put(MapServers::Offer found) {
-    const std::lock_guard lock(mutex);
-    offer = std::move(found);
-  }
-  [[nodiscard]] std::optional<MapServers::Offer> take() {
-    const std::lock_guard lock(mutex);
-    return std::exchange(offer, std::nullopt);
-  }
-  void hold(std::unique_ptr<PendingFetch> begun) {
-    const std::lock_guard lock(mutex);
-    if (!isGivenUp) {
-      fetch.swap(begun);
+  void begin() {
+    if (isWebAddress(server.url)) {
+      fetch({0, server.url});
+    } else {
+      put(0, readDocumentFile(server.url).and_then([&](const Fetched& read) {
+        return ServerDocuments::read(read, server.url, server.globe);
+      }));
     }
   }
+
+  /// What there is, if that is all.
+  [[nodiscard]] bool isComplete() {
+    const std::lock_guard lock(mutex);
+    return documents.isComplete();
+  }
+  [[nodiscard]] MapServers::Offer offer(const std::string& late) {
+    const std::lock_guard lock(mutex);
+    return documents.offer(late);
+  }
   void giveUp() {
-    std::unique_ptr<PendingFetch> cancelled;  // under no lock: it may wait for what takes the lock
+    std::vector<std::unique_ptr<PendingFetch>> cancelled;  // under no lock: they may wait for what takes the lock
     const std::lock_guard lock(mutex);
     isGivenUp = true;
-    cancelled.swap(fetch);
+    cancelled.swap(fetches);
   }
+
+ private:
+  void fetch(const ServerDocuments::Wanted& wanted) {
+    const FetchRequest request = requestFor(wanted);
+    // Weakly: the fetcher holds this function, and this holds the fetch.
+    std::unique_ptr<PendingFetch> begun = fetcher->fetch(
+        request, [&pool = workers, weak = weak_from_this(), request, number = wanted.number](Result<Fetched> answer) {
+          pool.post([weak, request, number, answer = std::move(answer)](const std::stop_token&) {
+            if (const std::shared_ptr<Work> still = weak.lock()) {
+              still->read(request, number, answer);
+            }
+          });
+        });
+    const std::lock_guard lock(mutex);
+    if (!isGivenUp) {
+      fetches.push_back(std::move(begun));
+    }
+  }
+
+  void read(const FetchRequest& request, std::size_t number, const Result<Fetched>& answer) {
+    if (!answer) {
+      put(number, tl::make_unexpected(answer.error()));
+      return;
+    }
+    auto entries = ServerDocuments::read(*answer, request.url, server.globe);
+    if (entries) {
+      fetcher->accept(request, *answer);
+    }
+    put(number, std::move(entries));
+  }
+
+  void put(std::size_t number, Result<std::vector<ServerDocuments::Entry>> entries) {
+    std::vector<ServerDocuments::Wanted> wanted;
+    {
+      const std::lock_guard lock(mutex);
+      if (isGivenUp) {
+        return;
+      }
+      wanted = documents.put(number, std::move(entries));
+    }
+    for (const ServerDocuments::Wanted& each : wanted) {
+      fetch(each);
+    }
+  }
+
+  WorkerPool& workers;
+  const std::shared_ptr<Fetcher> fetcher;
+  const MapServer server;
+  std::mutex mutex;  ///< of all that follows
+  ServerDocuments documents;
+  std::vector<std::unique_ptr<PendingFetch>> fetches;
+  bool isGivenUp = false;
 };
 
 CapabilitiesLoader::~CapabilitiesLoader() {
@@ -119,43 +126,9 @@ void CapabilitiesLoader::load(const MapServer& server, Done done) {
 }
 
 void CapabilitiesLoader::begin(Load& load) {
-  load.work = std::make_shared<Work>();
-  load.end = std::chrono::steady_clock::now() + longestWait;
-  workers_.post(
-      [&workers = workers_, work = load.work, server = load.server, fetcher = fetcher_](const std::stop_token&) {
-        if (isWebAddress(server.url)) {
-          work->hold(fetchFor(workers, work, server, fetcher));
-        } else {
-          work->put(readDocumentFile(server.url).and_then([&](const Fetched& read) { return offerOf(read, server); }));
-        }
-      });
-}
-
-std::unique_ptr<PendingFetch> CapabilitiesLoader::fetchFor(WorkerPool& workers, const std::shared_ptr<Work>& work,
-                                                           const MapServer& server,
-                                                           const std::shared_ptr<Fetcher>& fetcher) {
-  FetchRequest request;
-  request.url = server.url;
-  request.priority = documentPriority;
-  request.maximumBytes = largestDocument;
-  request.emptyStatuses = {};
-  request.isPatient = false;
-  // Weakly: the fetcher holds this function, and so does what the work holds.
-  return fetcher->fetch(request, [&workers, weakWork = std::weak_ptr(work), server, request,
-                                  weakFetcher = std::weak_ptr(fetcher)](Result<Fetched> answer) {
-    workers.post([weakWork, server, request, weakFetcher, answer = std::move(answer)](const std::stop_token&) {
-      const std::shared_ptr<Work> still = weakWork.lock();
-      const std::shared_ptr<Fetcher> fetcherOfIt = weakFetcher.lock();
-      if (still == nullptr || fetcherOfIt == nullptr) {
-        return;
-      }
-      MapServers::Offer offer = answer ? offerOf(*answer, server) : tl::make_unexpected(answer.error());
-      if (offer) {
-        fetcherOfIt->accept(request, *answer);
-      }
-      still->put(std::move(offer));
-    });
-  });
+  load.work = std::make_shared<Work>(workers_, fetcher_, load.server);
+  load.end = std::chrono::steady_clock::now() + wait_;
+  workers_.post([work = load.work](const std::stop_token&) { work->begin(); });
 }
 
 void CapabilitiesLoader::deliver() {
@@ -169,14 +142,10 @@ void CapabilitiesLoader::deliver() {
     if (load.work == nullptr) {
       begin(load);
     }
-    std::optional<MapServers::Offer> offer = load.work->take();
-    if (!offer && now >= load.end) {
-      offer = failure("the capabilities did not arrive within 15 seconds", load.server.url,
-                      "check the server, or try again");
-    }
-    if (offer) {
+    if (load.work->isComplete() || now >= load.end) {
       load.work->giveUp();
-      found.emplace_back(std::move(load.done), std::move(*offer));
+      found.emplace_back(std::move(load.done),
+                         load.work->offer(fmt::format("did not arrive within {} seconds", wait_.count())));
     } else {
       open.push_back(std::move(load));
     }

@@ -11,8 +11,8 @@
 
 namespace meridian::globebrowsing {
 
-/// Loads what map servers offer: fetches their capabilities (or reads a file), and reads them on a worker. Render
-/// thread only.
+/// Loads what map servers offer: fetches their capabilities (or reads a file) and, where these are lists, the documents
+/// that they name (server_documents.h); reads them on workers. Render thread only.
 class CapabilitiesLoader {
  public:
   using Done = std::function<void(MapServers::Offer)>;
@@ -20,14 +20,14 @@ class CapabilitiesLoader {
   static constexpr std::chrono::seconds longestWait{15};
 
   /// The workers outlive the loader, and what the fetcher calls.
-  CapabilitiesLoader(WorkerPool& workers, std::shared_ptr<Fetcher> fetcher)
-      : workers_(workers), fetcher_(std::move(fetcher)) {}
+  CapabilitiesLoader(WorkerPool& workers, std::shared_ptr<Fetcher> fetcher, std::chrono::seconds wait = longestWait)
+      : workers_(workers), fetcher_(std::move(fetcher)), wait_(wait) {}
   CapabilitiesLoader(const CapabilitiesLoader&) = delete;
   CapabilitiesLoader& operator=(const CapabilitiesLoader&) = delete;
   ~CapabilitiesLoader();
 
   /// Begins with the next deliver(), so that where no frame is drawn (--validate) nobody is asked. `done` is called by
-  /// a later one, within longestWait; not at all once the loader is gone.
+  /// a later one, within longestWait, with what is there by then; not at all once the loader is gone.
   void load(const MapServer& server, Done done);
   /// Every frame.
   void deliver();
@@ -41,12 +41,10 @@ class CapabilitiesLoader {
     std::chrono::steady_clock::time_point end;
   };
   void begin(Load& load);
-  [[nodiscard]] static std::unique_ptr<PendingFetch> fetchFor(WorkerPool& workers, const std::shared_ptr<Work>& work,
-                                                              const MapServer& server,
-                                                              const std::shared_ptr<Fetcher>& fetcher);
 
   WorkerPool& workers_;
   std::shared_ptr<Fetcher> fetcher_;
+  std::chrono::seconds wait_;
   std::vector<Load> loads_;
 };
 

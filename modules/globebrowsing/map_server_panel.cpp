@@ -124,8 +124,11 @@ void MapServerPanel::buildServer(PanelBuilder& builder, const MapServer& server)
   builder.endSection();
 }
 
-void MapServerPanel::buildOffer(PanelBuilder& builder, const MapServer& server,
-                                const std::vector<OfferedLayer>& offer) {
+void MapServerPanel::buildOffer(PanelBuilder& builder, const MapServer& server, const ServerOffer& serverOffer) {
+  if (!serverOffer.message.empty()) {
+    builder.warning(serverOffer.message);
+  }
+  const std::vector<OfferedLayer>& offer = serverOffer.layers;
   std::size_t matches = 0;
   for (std::size_t i = 0; i < offer.size(); ++i) {
     const OfferedLayer& layer = offer[i];

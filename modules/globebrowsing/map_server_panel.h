@@ -28,7 +28,7 @@ class MapServerPanel final : public Panel {
   void updateGlobes();
   void buildNewServer(PanelBuilder& builder);
   void buildServer(PanelBuilder& builder, const MapServer& server);
-  void buildOffer(PanelBuilder& builder, const MapServer& server, const std::vector<OfferedLayer>& offer);
+  void buildOffer(PanelBuilder& builder, const MapServer& server, const ServerOffer& serverOffer);
   void buildLayer(PanelBuilder& builder, const MapServer& server, const OfferedLayer& layer);
   void buildAdded(PanelBuilder& builder);
   void add(const MapServer& server, const OfferedLayer& layer, const OfferedLayer::Style& style);

@@ -37,10 +37,18 @@ ScriptResult capabilities(const MapServers& servers, Arguments arguments) {
   if (!offer) {
     log::warning("capabilitiesWMS: {}: {}", *name, offer.error().message());
   } else {
-    for (const OfferedLayer& layer : *offer) {
+    std::size_t hidden = 0;
+    const OfferedLayer* example = nullptr;
+    for (const OfferedLayer& layer : offer->layers) {
       if (!layer.url.empty()) {
         list.list.emplace_back(Table{{}, {{"Name", layer.name}, {"URL", layer.url}}});
+      } else if (++hidden == 1) {
+        example = &layer;
       }
+    }
+    if (example != nullptr) {
+      log::warning("capabilitiesWMS: {}: {} of {} layers cannot be shown, such as '{}': {}", *name, hidden,
+                   offer->layers.size(), example->name, example->obstacle);
     }
   }
   return std::vector<Value>{std::move(list)};

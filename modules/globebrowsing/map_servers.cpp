@@ -25,6 +25,8 @@ void MapServers::add(MapServer server) {
     }
     if (!offer) {
       log::error("map server {}: {}", name, offer.error().message());
+    } else if (!offer->message.empty()) {
+      log::warning("map server {}: {}", name, offer->message);
     }
     found->second.offer = std::move(offer);
     found->second.isLoading = false;

@@ -35,10 +35,15 @@ struct OfferedLayer {
   std::vector<Style> styles{};  ///< the service's default first; at least one of a layer that can be shown
 };
 
+struct ServerOffer {
+  std::vector<OfferedLayer> layers{};
+  std::string message{};  ///< what of its documents is missing, and why; empty: nothing
+};
+
 /// The servers by name, and what they offer as far as that is known. Render thread only.
 class MapServers {
  public:
-  using Offer = Result<std::vector<OfferedLayer>>;
+  using Offer = Result<ServerOffer>;
   /// Begins to load a server's capabilities, and calls `done` on the render thread when they are there or failed; never
   /// blocks. `done` may be called after the server was removed, but not after the MapServers have gone.
   using Loader = std::function<void(const MapServer& server, std::function<void(Offer)> done)>;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "globebrowsing/source/capabilities_parts.h"
+#include "globebrowsing/source/document_file.h"
 #include "globebrowsing/source/service_exception.h"
 #include "globebrowsing/source/service_text.h"
 #include "globebrowsing/source/time_dimension.h"
@@ -43,6 +44,30 @@ Reader readerOf(const pugi::xml_node& root) {
     return readWmtsCapabilities;
   }
   return nullptr;
+}
+
+/// What lies in a file has no address itself: relative ones in it lead nowhere.
+void refuseFileAddresses(Capabilities& capabilities) {
+  const bool areSetsAddresses = capabilities.kind == CapabilitiesKind::Tms;
+  bool hasSets = true;
+  for (MatrixSet& set : capabilities.matrixSets) {
+    if (areSetsAddresses) {
+      std::erase_if(set.matrices, [](const TileMatrix& matrix) { return !isWebAddress(matrix.identifier); });
+      hasSets = hasSets && !set.matrices.empty();
+    }
+  }
+  for (CapabilitiesLayer& layer : capabilities.layers) {
+    if (!layer.obstacle.empty()) {
+      continue;
+    }
+    std::erase_if(layer.addresses, [&](const AddressTemplate& address) {
+      return areSetsAddresses ? !hasSets : !isWebAddress(address.address);
+    });
+    if (layer.matrixSets.empty() ? !isWebAddress(capabilities.mapAddress) : layer.addresses.empty()) {
+      layer.obstacle =
+          "its document is a file in which addresses are relative: the document's own address is to be given";
+    }
+  }
 }
 
 }  // namespace
@@ -112,6 +137,9 @@ Result<Capabilities> parseCapabilities(std::span<const std::uint8_t> bytes, cons
     capabilities->url = url;
     for (CapabilitiesLayer& layer : capabilities->layers) {
       sortFormats(layer.formats);
+    }
+    if (!isWebAddress(url)) {
+      refuseFileAddresses(*capabilities);
     }
   }
   return capabilities;

@@ -187,6 +187,31 @@ std::vector<TileMatrix> matricesOf(const GdalWindow& window, const GdalMiniDrive
   return matrices;
 }
 
+/// What of the window holds data, by the element Extent of our own documents; all of it without one.
+Result<Extent> readExtent(const XmlDocument& document, const GdalWindow& window) {
+  const Extent whole{window.left, window.bottom, window.right, window.top};
+  const pugi::xml_node node = child(document.root(), "Extent");
+  if (!node) {
+    return whole;
+  }
+  Extent extent = whole;
+  WindowReader reader(document);
+  reader.real(node, "UpperLeftX", extent.west);
+  reader.real(node, "UpperLeftY", extent.north);
+  reader.real(node, "LowerRightX", extent.east);
+  reader.real(node, "LowerRightY", extent.south);
+  if (reader.error()) {
+    return tl::make_unexpected(*reader.error());
+  }
+  extent = {std::max(extent.west, whole.west), std::max(extent.south, whole.south), std::min(extent.east, whole.east),
+            std::min(extent.north, whole.north)};
+  if (!(extent.west < extent.east) || !(extent.south < extent.north)) {
+    return failure("the Extent has nothing of the DataWindow", document.placeOf(node),
+                   "give its corners in the units of the DataWindow, or leave it out");
+  }
+  return extent;
+}
+
 void readRequestSettings(const pugi::xml_node& root, TileService& service, std::vector<std::string>& notes) {
   for (const std::string& code : split(text(root, "ZeroBlockHttpCodes"), ", ")) {
     const long long status = integer(code).value_or(0);
@@ -264,6 +289,10 @@ Result<GdalDescription> readGdalWms(const std::string& content, const std::strin
     description.reason = "the DataWindow runs westward or upward";
     return description;
   }
+  auto extent = readExtent(*document, *window);
+  if (!extent) {
+    return tl::make_unexpected(std::move(extent.error()));
+  }
   auto crs = crsOf(*document, **driver, *window);
   if (!crs) {
     return tl::make_unexpected(std::move(crs.error()));
@@ -272,14 +301,13 @@ Result<GdalDescription> readGdalWms(const std::string& content, const std::strin
   service.where = where;
   service.name = text(root, "Name").empty() ? text(serviceNode, "Layers") : text(root, "Name");
   service.crs = std::move(*crs);
-  Extent extent{window->left, window->bottom, window->right, window->top};
   if (service.crs.empty()) {
-    extent = {extent.west, std::max(extent.south, -90.0), std::min(extent.east, extent.west + 360.0),
-              std::min(extent.north, 90.0)};
+    *extent = {extent->west, std::max(extent->south, -90.0), std::min(extent->east, extent->west + 360.0),
+               std::min(extent->north, 90.0)};
   }
   readRequestSettings(root, service, description.notes);
   readValues(root, service, description.notes);
-  if (auto set = setMatrices(service, matricesOf(*window, **driver), extent); !set) {
+  if (auto set = setMatrices(service, matricesOf(*window, **driver), *extent); !set) {
     return tl::make_unexpected(std::move(set.error()));
   }
   TileUrl url = std::move((*driver)->url);

@@ -28,7 +28,12 @@ struct GdalDescription {
 /// - tiles that reach over the window's edge are asked for whole, not clamped;
 /// - TLS is verified, `UnsafeSSL` or not; `Cache`, `MaxConnections`, `Timeout`, `OfflineMode` are not ours.
 ///
-/// `where` names the document in errors. Errors: no XML, or elements missing or wrong that GDAL needs as well.
+/// An element Extent of our own, which GDAL ignores, says what of the DataWindow holds data: UpperLeftX, UpperLeftY,
+/// LowerRightX and LowerRightY in the window's units, each the window's own where it is missing. Nothing beyond is
+/// asked for.
+///
+/// `where` names the document in errors. Errors: no XML, or elements missing or wrong that GDAL needs as well; an
+/// Extent with numbers that are none, or with nothing of the window.
 [[nodiscard]] Result<GdalDescription> readGdalWms(const std::string& text, const std::string& where);
 
 }  // namespace meridian::globebrowsing

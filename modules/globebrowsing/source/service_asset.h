@@ -30,15 +30,14 @@ struct PlacedLayer {
 /// An asset file that adds these layers to a globe on initialisation, in that order, and deletes them again.
 [[nodiscard]] std::string layersAsset(const std::string& globe, std::span<const PlacedLayer> layers);
 
-/// What to write of a layer of these capabilities. FilePath is what OpenSpace opens as well: for maps a `<GDAL_WMS>`
-/// document of the service WMS; for regular pyramids with plain numbers (most of WMTS, TMS and ArcGIS) one of the
-/// service TMS; for other WMTS a string "WMTS:URL,layer=...". A WMS or WMTS layer with times, none of them chosen, is
-/// named by its capabilities (the string, or the document's GetCapabilitiesUrl), so that here it follows time;
-/// OpenSpace shows the service's default of it. Errors: those of serviceOf; tiles that none of these can describe.
+/// What to write of a layer of these capabilities. Where such a document has all its levels and limits, FilePath is
+/// what OpenSpace opens as well: for maps of a WMS a `<GDAL_WMS>` document of the service WMS, for regular pyramids
+/// with plain numbers (most of WMTS, TMS and ArcGIS) one of the service TMS. All others are named by their capabilities
+/// (capabilities_reference.h); of these OpenSpace opens "WMTS:...". A WMS or WMTS layer with times, none of them
+/// chosen, is named by its capabilities, too (of maps the document has their GetCapabilitiesUrl), so that here it
+/// follows time; OpenSpace shows the service's default of it. Errors: those of serviceOf; choices that no text can
+/// name.
 [[nodiscard]] Result<LayerAsset> assetOf(const Capabilities& capabilities, const CapabilitiesLayer& layer,
                                          const LayerChoices& choices, const AssetPlace& place);
-
-/// A `<GDAL_WMS>` document of the service's tiles. Errors: levels that do not halve, addresses by other than numbers.
-[[nodiscard]] Result<std::string> gdalWmsOf(const TileService& service);
 
 }  // namespace meridian::globebrowsing

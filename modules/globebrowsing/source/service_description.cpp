@@ -25,6 +25,47 @@ bool isDocument(std::string_view text) {
   return begin.starts_with('<');
 }
 
+/// The name of the first element in the beginning of a document, without its prefix; empty where that is no XML.
+std::string_view rootName(std::string_view head) {
+  while (true) {
+    head = trimmed(head);
+    if (!head.starts_with('<')) {
+      return {};
+    }
+    std::string_view end = ">";
+    if (head.starts_with("<!--")) {
+      end = "-->";
+    } else if (head.starts_with("<!") && head.find('[') < head.find('>')) {
+      end = "]>";
+    } else if (!head.starts_with("<?") && !head.starts_with("<!")) {
+      const std::string_view name = head.substr(1, head.find_first_of(" \t\r\n/>") - 1);
+      return name.substr(name.find(':') + 1);
+    }
+    const std::size_t at = head.find(end);
+    if (at == std::string_view::npos) {
+      return {};
+    }
+    head.remove_prefix(at + end.size());
+  }
+}
+
+/// The name of the root element of a file of any size; empty where it is no XML.
+std::string rootNameIn(const std::string& path) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code)) {
+    return {};
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::string head(16384, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  if (head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF")) {  // UTF-16; the names are ASCII
+    head.erase(0, 2);
+    std::erase(head, '\0');
+  }
+  return std::string(rootName(head.starts_with("\xEF\xBB\xBF") ? std::string_view(head).substr(3) : head));
+}
+
 /// The text of a small file that begins as XML does; nothing for any other.
 std::optional<std::string> documentIn(const std::string& path) {
   std::error_code code;
@@ -84,59 +125,16 @@ Result<ServiceDescription> describeVrt(const std::string& content, const Source&
   return result;
 }
 
-/// "key=value" and "key="value"" of GDAL's WMTS strings, and the elements of its documents.
-void choose(CapabilitiesReference& reference, const std::string& key, std::string value) {
-  if (value.size() >= 2 && value.front() == '"' && value.back() == '"') {
-    value = value.substr(1, value.size() - 2);
-  }
-  const std::string name = lowerCase(key);
-  if (name == "layer") {
-    reference.layer = value;
-  } else if (name == "style") {
-    reference.choices.style = value;
-  } else if (name == "tilematrixset") {
-    reference.choices.matrixSet = value;
-  } else if (name == "time") {
-    reference.choices.time = value;
-  } else if (name == "format") {
-    reference.choices.format = value;
-  } else if (name == "crs") {
-    reference.choices.crs = value;
-  }
-}
-
-CapabilitiesReference referenceOf(std::string_view text) {
-  CapabilitiesReference reference;
-  std::vector<std::string> parts;
-  bool isQuoted = false;
-  std::string part;
-  for (const char c : text) {
-    isQuoted = c == '"' ? !isQuoted : isQuoted;
-    if (c == ',' && !isQuoted) {
-      parts.push_back(std::exchange(part, {}));
-    } else {
-      part += c;
-    }
-  }
-  parts.push_back(part);
-  reference.url = repairedUrl(replaceAll(parts.front(), "\"", ""));
-  for (std::size_t i = 1; i < parts.size(); ++i) {
-    const std::size_t equals = parts[i].find('=');
-    choose(reference, std::string(trimmed(parts[i].substr(0, equals))),
-           equals == std::string::npos ? std::string() : parts[i].substr(equals + 1));
-  }
-  return reference;
-}
-
 Result<ServiceDescription> describeWmtsDocument(const XmlDocument& document) {
   CapabilitiesReference reference;
+  reference.kind = CapabilitiesKind::Wmts;
   const pugi::xml_node root = document.root();
   reference.url = repairedUrl(text(root, "GetCapabilitiesUrl"));
   if (reference.url.empty()) {
     return failure("the description has no GetCapabilitiesUrl", document.placeOf(root));
   }
   for (const pugi::xml_node& entry : root.children()) {
-    choose(reference, std::string(localName(entry)), text(entry));
+    choose(reference, localName(entry), text(entry));
   }
   ServiceDescription result;
   result.reference = std::move(reference);
@@ -147,6 +145,7 @@ Result<ServiceDescription> describeWmtsDocument(const XmlDocument& document) {
 CapabilitiesReference referenceOfMaps(const pugi::xml_node& root) {
   const pugi::xml_node service = child(root, "Service");
   CapabilitiesReference reference;
+  reference.kind = CapabilitiesKind::Wms;
   reference.url = repairedUrl(text(root, "GetCapabilitiesUrl"));
   reference.layer = text(service, "Layers");
   reference.choices.style = text(service, "Styles");
@@ -252,27 +251,16 @@ Result<ServiceDescription> describeGetMap(const std::string& url, const std::str
   return result;
 }
 
-bool isArcGis(const std::string& text) {
-  const std::string path = lowerCase(withoutQuery(text));
-  return lowerCase(text).starts_with("http") && (path.ends_with("/mapserver") || path.ends_with("/imageserver"));
-}
-
 Result<ServiceDescription> describe(const Source& source) {
   const std::string& text = source.filePath;
   if (isDocument(text)) {
     return describeDocument(text, source, {});
   }
-  const std::string prefix = lowerCase(text.substr(0, 5));
   ServiceDescription result;
-  if (prefix == "wmts:") {
-    result.reference = referenceOf(std::string_view(text).substr(5));
+  if ((result.reference = readReference(text))) {
     return result;
   }
-  if (prefix.starts_with("wms:") && containsIgnoringCase(text, ",layer=")) {
-    result.reference = referenceOf(std::string_view(text).substr(4));
-    return result;
-  }
-  if (prefix.starts_with("wms:") && containsIgnoringCase(text, "layers=")) {
+  if (lowerCase(text.substr(0, 4)) == "wms:" && containsIgnoringCase(text, "layers=")) {
     return describeGetMap(repairedUrl(std::string_view(text).substr(4)), source.where);
   }
   if (isUrlTemplate(text)) {
@@ -283,8 +271,8 @@ Result<ServiceDescription> describe(const Source& source) {
     result.service = std::move(*service);
     return result;
   }
-  if (isArcGis(text)) {
-    result.reference = CapabilitiesReference{withParameters(text, {{"f", "json"}})};
+  if (isCapabilitiesRoot(rootNameIn(text))) {
+    result.reference = CapabilitiesReference{text};
     return result;
   }
   if (const std::optional<std::string> content = documentIn(text)) {
@@ -303,37 +291,16 @@ Result<ServiceDescription> describeService(const std::string& filePath, const st
 }
 
 bool mayHaveTimes(const std::string& filePath) {
-  const std::string prefix = lowerCase(std::string_view(filePath).substr(0, 5));
-  const bool isNamed = isDocument(filePath) ? containsIgnoringCase(filePath, "GetCapabilitiesUrl")
-                                            : prefix == "wmts:" || prefix.starts_with("wms:");
-  if (!isNamed) {
-    return false;
+  std::optional<CapabilitiesReference> reference;
+  if (!isDocument(filePath)) {
+    reference = readReference(filePath);
+  } else if (containsIgnoringCase(filePath, "GetCapabilitiesUrl")) {
+    Result<ServiceDescription> described = describeService(filePath, {});
+    reference = described ? std::move(described->reference) : std::nullopt;
   }
-  const Result<ServiceDescription> described = describeService(filePath, {});
-  return described && described->reference && described->reference->choices.time.empty();
-}
-
-Result<const CapabilitiesLayer*> layerOf(const CapabilitiesReference& reference, const Capabilities& capabilities) {
-  const CapabilitiesLayer* layer = nullptr;
-  if (!reference.layer.empty()) {
-    layer = capabilities.find(reference.layer);
-  } else {
-    const auto usable = std::find_if(capabilities.layers.begin(), capabilities.layers.end(),
-                                     [](const CapabilitiesLayer& candidate) { return candidate.obstacle.empty(); });
-    layer = usable == capabilities.layers.end() ? nullptr : &*usable;
-  }
-  if (layer == nullptr) {
-    return failure(reference.layer.empty() ? std::string("the service has no layer that can be shown")
-                                           : "the service has no layer '" + reference.layer + "'",
-                   reference.url, "choose one that its capabilities list");
-  }
-  return layer;
-}
-
-Result<TileService> serviceOf(const CapabilitiesReference& reference, const Capabilities& capabilities) {
-  return layerOf(reference, capabilities).and_then([&](const CapabilitiesLayer* layer) {
-    return serviceOf(capabilities, *layer, reference.choices);
-  });
+  const bool isOfTimes =
+      reference && (reference->kind == CapabilitiesKind::Wms || reference->kind == CapabilitiesKind::Wmts);
+  return isOfTimes && reference->choices.time.empty();
 }
 
 }  // namespace meridian::globebrowsing

@@ -243,11 +243,11 @@ TEST(MapServers, OfferWhatTheirLoaderFinds) {
   servers.add({"S", "Earth", "https://a"});
   EXPECT_THAT(servers.offered("S").error().message(), HasSubstr("not arrived"));
   servers.add({"S", "Earth", "https://b"});
-  waiting.at(0)(std::vector<OfferedLayer>{{"Old", "WMS:a"}});
+  waiting.at(0)(ServerOffer{{{"Old", "WMS:a"}}});
   EXPECT_FALSE(servers.offered("S")) << "the answer of a server that was replaced";
-  waiting.at(1)(std::vector<OfferedLayer>{{"New", "WMS:b"}});
+  waiting.at(1)(ServerOffer{{{"New", "WMS:b"}}});
   ASSERT_TRUE(servers.offered("S"));
-  EXPECT_EQ(servers.offered("S")->front().url, "WMS:b");
+  EXPECT_EQ(servers.offered("S")->layers.front().url, "WMS:b");
   servers.add({"Bad", "Earth", "https://c"});
   waiting.at(2)(failure("refused", "https://c"));
   EXPECT_THAT(servers.offered("Bad").error().message(), HasSubstr("refused"));

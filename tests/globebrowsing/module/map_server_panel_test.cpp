@@ -127,12 +127,13 @@ TEST_F(MapServerPanelTest, LoadsAServerAndListsWhatItOffers) {
   EXPECT_THAT(build().texts, Contains("loading ..."));
   OfferedLayer broken{"Broken", ""};
   broken.obstacle = "it has no tiles";
-  asked_[0].second(std::vector<OfferedLayer>{offered("Clouds", {"plain"}), offered("Ice", {"a", "b"}), broken});
+  asked_[0].second(
+      ServerOffer{{offered("Clouds", {"plain"}), offered("Ice", {"a", "b"}), broken}, "1 of 3 documents was left out"});
   const Hand all = build();
   EXPECT_THAT(all.texts, testing::IsSupersetOf({"3 of 3 layers", "times 2000-01-01/2020-01-01/P1D", "Somebody",
                                                 "west -28.65, south -14.32, east 28.65, north 14.32"}));
   EXPECT_THAT(all.buttons, testing::IsSupersetOf({"Clouds/Add", "Ice/Add, style a", "Ice/Add, style b"}));
-  EXPECT_THAT(all.warnings, ElementsAre(HasSubstr("it has no tiles")));
+  EXPECT_THAT(all.warnings, ElementsAre("1 of 3 documents was left out", HasSubstr("it has no tiles")));
   set("Filter", "iC");
   const Hand filtered = build();
   EXPECT_THAT(filtered.sections, testing::AllOf(Contains("Ice"), testing::Not(Contains("Clouds"))));
@@ -141,7 +142,7 @@ TEST_F(MapServerPanelTest, LoadsAServerAndListsWhatItOffers) {
 
 TEST_F(MapServerPanelTest, LayersAndStylesOfOneNameAreEachAdded) {
   servers_.add({"New server", "Earth", "https://maps"});
-  asked_[0].second(std::vector<OfferedLayer>{offered("Ice", {"a"}), offered("Ice", {"b", "b"})});
+  asked_[0].second(ServerOffer{{offered("Ice", {"a"}), offered("Ice", {"b", "b"})}});
   build("Ice##1/Add, style b##1");
   build("Ice##0/Add##0");
   const LayerGroup& group = globe("Earth").layers().group(LayerGroupId::ColorLayers);
@@ -167,7 +168,7 @@ TEST_F(MapServerPanelTest, ListsSoManyOnly) {
   for (int i = 0; i < 500; ++i) {
     many.push_back(offered("L" + std::to_string(i), {"s"}));
   }
-  asked_[0].second(many);
+  asked_[0].second(ServerOffer{many});
   const Hand hand = build();
   EXPECT_EQ(std::count_if(hand.sections.begin(), hand.sections.end(), [](auto& each) { return each.starts_with("L"); }),
             static_cast<std::ptrdiff_t>(MapServerPanel::mostListed));
@@ -177,7 +178,7 @@ TEST_F(MapServerPanelTest, ListsSoManyOnly) {
 TEST_F(MapServerPanelTest, WhatIsAddedIsWrittenAsAnAssetThatAddsItAgain) {
   addGlobe("Moon");
   servers_.add({"S", "Earth", "https://maps"});
-  asked_[0].second(std::vector<OfferedLayer>{offered("Ice", {"a", "b"})});
+  asked_[0].second(ServerOffer{{offered("Ice", {"a", "b"})}});
   EXPECT_THAT(build().buttons, testing::Not(Contains("Added layers/Write asset"))) << "there is nothing to write";
   set("Globe", "Moon");
   build("Ice/Add, style b");

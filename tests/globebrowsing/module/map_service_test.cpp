@@ -183,23 +183,24 @@ TEST_F(CapabilitiesLoaderTest, AServerOffersWhatAnAssetCanName) {
   const std::string address = "http://127.0.0.1:" + std::to_string(port);
   const MapServers::Offer offer = offered(address + "/tilemapresource.xml");
   ASSERT_TRUE(offer) << offer.error().message();
-  ASSERT_EQ(offer->size(), 1U);
-  EXPECT_EQ(offer->front().name, "The world");
-  EXPECT_THAT(offer->front().url, HasSubstr("<GDAL_WMS>"));
-  EXPECT_THAT(offer->front().url, HasSubstr(address));
-  EXPECT_EQ(offer->front().attribution, "The makers");
-  ASSERT_TRUE(offer->front().extent);
-  EXPECT_NEAR(offer->front().extent->west, -std::numbers::pi, 1e-9);
-  ASSERT_EQ(offer->front().styles.size(), 1U);
-  const Value& table = offer->front().styles.front().table;
-  EXPECT_EQ(*table.find("FilePath"), Value(offer->front().url));
+  ASSERT_EQ(offer->layers.size(), 1U);
+  EXPECT_EQ(offer->layers.front().name, "The world");
+  EXPECT_THAT(offer->layers.front().url, HasSubstr("<GDAL_WMS>"));
+  EXPECT_THAT(offer->layers.front().url, HasSubstr(address));
+  EXPECT_EQ(offer->layers.front().attribution, "The makers");
+  ASSERT_TRUE(offer->layers.front().extent);
+  EXPECT_NEAR(offer->layers.front().extent->west, -std::numbers::pi, 1e-9);
+  ASSERT_EQ(offer->layers.front().styles.size(), 1U);
+  const Value& table = offer->layers.front().styles.front().table;
+  EXPECT_EQ(*table.find("FilePath"), Value(offer->layers.front().url));
   EXPECT_EQ(*table.find("Attribution"), Value("The makers"));
 }
 
 TEST_F(CapabilitiesLoaderTest, CapabilitiesMayLieInAFile) {
   const MapServers::Offer offer = offered((folder_ / "tilemapresource.xml").string());
   ASSERT_TRUE(offer) << offer.error().message();
-  EXPECT_EQ(offer->size(), 1U);
+  ASSERT_EQ(offer->layers.size(), 1U);
+  EXPECT_THAT(offer->layers.front().obstacle, HasSubstr("the document's own address")) << "its tiles lie nowhere";
   EXPECT_FALSE(services_.fetcher()->hasStarted());
 }
 

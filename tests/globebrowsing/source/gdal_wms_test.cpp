@@ -334,6 +334,28 @@ TEST(VrtWrapper, RealOnesWrapTheirSibling) {
   }
 }
 
+TEST(GdalWms, AnExtentNarrowsTheWindow) {
+  const auto read = [](const std::string& extent) {
+    std::string document = tms(wholeWorld + "<SizeX>1024</SizeX><SizeY>512</SizeY><TileLevel>1</TileLevel>");
+    return readGdalWms(document.insert(document.find("<DataWindow>"), extent), "a.wms");
+  };
+  const auto corner =
+      read("<Extent><UpperLeftX>10</UpperLeftX><UpperLeftY>47.83</UpperLeftY><LowerRightX>300</LowerRightX></Extent>");
+  ASSERT_TRUE(corner) << corner.error().message();
+  ASSERT_TRUE(corner->service);
+  EXPECT_EQ(corner->service->west, 10.0);
+  EXPECT_EQ(corner->service->south, -90.0) << "what is not said is the window's";
+  EXPECT_EQ(corner->service->east, 180.0) << "nor is there more than the window";
+  EXPECT_EQ(corner->service->north, 47.83);
+  EXPECT_EQ(corner->service->matrices.front().firstColumn, 2);
+  const auto wrong = read("<Extent><UpperLeftX>ten</UpperLeftX></Extent>");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().message().find("a.wms:"), std::string::npos) << wrong.error().message();
+  EXPECT_NE(wrong.error().what.find("'ten'"), std::string::npos);
+  EXPECT_FALSE(read("<Extent><UpperLeftX>200</UpperLeftX></Extent>"));
+  EXPECT_FALSE(read("<Extent><UpperLeftX>20</UpperLeftX><LowerRightX>10</LowerRightX></Extent>"));
+}
+
 std::string vrt(const std::string& transform, const std::string& to, const std::string& alpha) {
   const std::string place = "<SrcRect xOff=\"0\" yOff=\"0\" xSize=\"1024\" ySize=\"512\"/>" + to;
   const std::string file = "<SourceFilename relativeToVRT=\"1\">a.wms</SourceFilename><SourceBand>1</SourceBand>";

@@ -78,12 +78,69 @@ TEST(ServiceDescription, TellsWhatAFilePathIs) {
   ASSERT_TRUE(esri.reference);
   EXPECT_EQ(esri.reference->url, "https://h/arcgis/rest/services/A/MapServer?f=json");
   for (const char* other : {"/no/such/file.tif", "NETCDF:\"a.nc\":b", "/vsicurl/http://h/a.tif", "<VRTDataset/>",
-                            "WMS:http://h/w?REQUEST=GetCapabilities"}) {
+                            "WMS:http://h/w?REQUEST=DescribeLayer", "https://h/a.tif"}) {
     const ServiceDescription gdal = describe(other);
     EXPECT_FALSE(gdal.service || gdal.reference) << other;
     EXPECT_FALSE(gdal.reason.empty());
   }
   EXPECT_FALSE(describeService("<GDAL_WMS>", "a.asset:1"));
+}
+
+TEST(ServiceDescription, CapabilitiesOfEveryKindAreReferredTo) {
+  struct Case {
+    const char* text;
+    CapabilitiesKind kind;
+    const char* url;
+    const char* layer;
+  };
+  using Kind = CapabilitiesKind;
+  for (const Case& test :
+       {Case{"TMS:http://h/t/", Kind::Tms, "http://h/t/", ""},
+        {"tms:http://h/t,layer=\"a, b\"", Kind::Tms, "http://h/t", "a, b"},
+        {"TMS:\"http://h/a,b\",layer=c", Kind::Tms, "http://h/a,b", "c"},
+        {"http://h/t/TileMapResource.xml", Kind::Tms, "http://h/t/TileMapResource.xml", ""},
+        {"ArcGIS:http://h/A/MapServer/,layer=3", Kind::ArcGis, "http://h/A/MapServer?f=json", "3"},
+        {"ArcGIS:http://h/A/MapServer?f=pjson&token=t", Kind::ArcGis, "http://h/A/MapServer?token=t&f=json", ""},
+        {"https://h/A/ImageServer/", Kind::ArcGis, "https://h/A/ImageServer?f=json", ""},
+        {"https://h/A/MapServer//?f=json", Kind::ArcGis, "https://h/A/MapServer?f=json", ""},
+        {"https://h/1.0.0/WMTSCapabilities.xml", Kind::Wmts, "https://h/1.0.0/WMTSCapabilities.xml", ""},
+        {"https://h/w?Service=wmts&Request=GetCapabilities", Kind::Wmts,
+         "https://h/w?Service=wmts&Request=GetCapabilities", ""},
+        {"WMS:http://h/w?REQUEST=GetTileService,layer=c", Kind::TiledWms, "http://h/w?REQUEST=GetTileService", "c"},
+        {"WMS:http://h/w?request=GetTileService", Kind::TiledWms, "http://h/w?request=GetTileService", ""},
+        {"WMS:http://h/w?REQUEST=GetCapabilities", Kind::Wms, "http://h/w?REQUEST=GetCapabilities", ""}}) {
+    const ServiceDescription described = describe(test.text);
+    ASSERT_TRUE(described.reference) << test.text << ": " << described.reason;
+    EXPECT_EQ(described.reference->kind, test.kind) << test.text;
+    EXPECT_EQ(described.reference->url, test.url) << test.text;
+    EXPECT_EQ(described.reference->layer, test.layer) << test.text;
+    EXPECT_EQ(mayHaveTimes(test.text), test.kind == Kind::Wms || test.kind == Kind::Wmts) << test.text;
+  }
+}
+
+TEST(ServiceDescription, FilesOfCapabilitiesAreReferredTo) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "meridian_capabilities_files";
+  std::filesystem::create_directories(folder);
+  const std::string path = (folder / "a.xml").string();
+  const auto isReference = [&](const std::string& content) {
+    std::ofstream(path, std::ios::binary) << content;
+    const Result<ServiceDescription> described = describeService(path, "a.asset:1");
+    return described && described->reference && described->reference->url == path;
+  };
+  EXPECT_TRUE(isReference("<TileMap/>"));
+  EXPECT_TRUE(isReference("\xEF\xBB\xBF<?xml version='1.0'?>\n<!-- <a> -->\n<wmts:Capabilities xmlns:wmts='w'>"));
+  EXPECT_TRUE(isReference("<!DOCTYPE WMT_MS_Capabilities SYSTEM 'x' [ <!ELEMENT V EMPTY> ]>\n<WMT_MS_Capabilities >"));
+  EXPECT_TRUE(isReference("<WMS_Capabilities>" + std::string(5 << 20, ' ') + "</WMS_Capabilities>")) << "large ones";
+  std::string wide;
+  for (const char c : std::string("<WMS_Tile_Service/>")) {
+    wide += {c, '\0'};
+  }
+  EXPECT_TRUE(isReference("\xFF\xFE" + wide)) << "UTF-16";
+  EXPECT_FALSE(isReference("<kml><TileMap/></kml>"));
+  EXPECT_FALSE(isReference("<!-- TileMap"));
+  EXPECT_FALSE(isReference("<"));
+  EXPECT_FALSE(isReference(""));
+  std::filesystem::remove_all(folder);
 }
 
 TEST(ServiceDescription, OfAServersAddressOnlyWhatIsNoPartOfGetMapIsKept) {
@@ -152,49 +209,6 @@ TEST(ServiceDescription, RealVrtsNeedTheirSibling) {
   EXPECT_EQ(whole.service->bands, 3);
   EXPECT_EQ(whole.service->url({0, 16383, 8191}), "http://h/13/8191/16383.png");
   std::filesystem::remove_all(folder);
-}
-
-/// What is written is read again, and asks for the same tiles at the same places.
-void comesBack(const Capabilities& capabilities, const std::string& layer, const char* begin) {
-  SCOPED_TRACE(layer);
-  const CapabilitiesLayer* found = capabilities.find(layer);
-  ASSERT_NE(found, nullptr);
-  const TileService service = *serviceOf(capabilities, *found);
-  const auto asset = assetOf(capabilities, *found, {}, {"Earth", "ColorLayers"});
-  ASSERT_TRUE(asset) << asset.error().message();
-  const std::string path = *asset->table.find("FilePath")->string();
-  EXPECT_EQ(path.substr(0, std::string_view(begin).size()), begin);
-  EXPECT_NE(asset->text.find("addLayer(\"Earth\", \"ColorLayers\", layer)"), std::string::npos) << asset->text;
-  ServiceDescription again = describe(path);
-  if (again.reference) {
-    again.service = *serviceOf(*again.reference, capabilities);
-  } else {
-    EXPECT_TRUE(openWithGdal(path)) << path;  // and so OpenSpace can
-  }
-  ASSERT_TRUE(again.service) << path;
-  // The same place: the tile of ours around the middle of the coarsest level, wherever it is counted from.
-  const TileMatrix& ours = service.matrices.back();
-  const TileMatrix& theirs = again.service->matrices.back();
-  EXPECT_NEAR(ours.pixelWidth, theirs.pixelWidth, 1e-6 * ours.pixelWidth);
-  if (again.service->url({again.service->matrices.size() - 1, 0, 0}).find("bbox") == std::string::npos) {
-    EXPECT_EQ(service.url({service.matrices.size() - 1, ours.lastColumn, ours.lastRow}),
-              again.service->url({again.service->matrices.size() - 1, ours.lastColumn, ours.lastRow}));
-    const TileMatrix& finest = service.matrices.front();
-    EXPECT_EQ(service.url({0, finest.firstColumn, finest.lastRow}),
-              again.service->url({0, finest.firstColumn, finest.lastRow}));
-  }
-}
-
-TEST(ServiceAsset, WhatIsWrittenIsReadAgain) {
-  MERIDIAN_NEEDS(sharedData("capabilities"));
-  comesBack(realCapabilities("wmts_eox_maps.xml"), "bluemarble", "<GDAL_WMS>");
-  comesBack(realCapabilities("wmts_nasa_trek_mars_themis.xml"), "THEMIS_NightIR_ControlledMosaics_100m_v2_oct2018",
-            "<GDAL_WMS>");
-  comesBack(realCapabilities("wmts_pdok_nl.xml"), "brtachtergrondkaart", "WMTS:");
-  comesBack(realCapabilities("wms130_gibs_onearth.xml"), "NASA_GIBS_EPSG4326", "<GDAL_WMS>");
-  comesBack(realCapabilities("wms111_noaa_nowcoast_forecasts.xml"), "world_countries_label", "<GDAL_WMS>");
-  comesBack(realCapabilities("tms_ne2_webmercator_tilemapresource.xml", "http://h/t/tilemapresource.xml"),
-            "ne2-webmerc.tif", "<GDAL_WMS>");
 }
 
 }  // namespace
