@@ -220,6 +220,7 @@ Result<void> LayerManager::deleteLayer(std::string_view groupName, std::string_v
     return group(named.group).remove(identifier);
   });
 }
+  served.table = withTokensReplaced(served.table, services_.tokenFolder);
 
 Result<void> LayerManager::moveLayer(std::string_view groupName, std::string_view identifier, int position) {
   return requireGroup(groupName, uri()).and_then([&](const NamedGroup& named) {
