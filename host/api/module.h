@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +40,9 @@ class Host {
   [[nodiscard]] virtual Renderable* renderable(std::string_view node) = 0;
   /// Identifiers of all nodes, in the order of adding.
   [[nodiscard]] virtual std::vector<std::string> nodes() const = 0;
+
+  /// The folder that a path token stands for, by its name with or without "${" and "}"; nothing for an unknown one.
+  [[nodiscard]] virtual std::optional<std::filesystem::path> pathToken(std::string_view name) const = 0;
 
   // For script functions, while one runs.
   /// Where the script stands that calls: "FILE:LINE" for messages, and the folder that relative paths begin at.

@@ -49,7 +49,7 @@ class Renderable : public PropertyOwner {
   /// What `--validate` counts and lists.
   struct Contents {
     struct Layer {
-      std::string name;               ///< "ColorLayers.BlueMarble"; of one whose table was refused: its group
+      std::string name;  ///< "ColorLayers.BlueMarble"; "ColorLayers[3]" of one that was refused and has no name
       std::optional<Error> unusable;  ///< why its provider cannot be built, or its local data do not exist
     };
     std::size_t globes = 0;

@@ -168,6 +168,11 @@ std::vector<std::string> Application::nodes() const {
   return identifiers;
 }
 
+std::optional<std::filesystem::path> Application::pathToken(std::string_view name) const {
+  const std::filesystem::path* const folder = tokens_.find(name);
+  return folder == nullptr ? std::nullopt : std::optional(*folder);
+}
+
 Host::ScriptPlace Application::scriptPlace() const {
   return {scripts_.place(), assetLoader_.currentFolder(), assetLoader_.runsAsset()};
 }

@@ -65,6 +65,7 @@ class Application final : public Host, private assets::AssetTarget {
   [[nodiscard]] Statistics& statistics() override { return statistics_; }
   [[nodiscard]] Renderable* renderable(std::string_view node) override;
   [[nodiscard]] std::vector<std::string> nodes() const override;
+  [[nodiscard]] std::optional<std::filesystem::path> pathToken(std::string_view name) const override;
   [[nodiscard]] ScriptPlace scriptPlace() const override;
   [[nodiscard]] Result<std::filesystem::path> readablePath(std::string_view path) const override;
   [[nodiscard]] Result<std::filesystem::path> writablePath(std::string_view path) const override;

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "globebrowsing/capabilities_loader.h"
 #include "globebrowsing/network/on_demand_fetcher.h"
+#include "globebrowsing/providers/path_tokens.h"
 #include "globebrowsing/source/source_tile_store.h"
 #include "globebrowsing/streaming/tile_streamer.h"
 #include "globebrowsing/streaming/worker_pool.h"
@@ -39,6 +41,10 @@ class GlobeServices {
   [[nodiscard]] TexturePoolShares& poolShares() { return poolShares_; }
   [[nodiscard]] Statistics& statistics() { return statistics_; }
 
+  /// Looks up path tokens for layers; none are known without it.
+  void setTokenFolder(TokenFolder folderOf) { tokenFolder_ = std::move(folderOf); }
+  [[nodiscard]] const TokenFolder& tokenFolder() const { return tokenFolder_; }
+
   /// Every globe calls this first in its update: the first call of a frame ends the last frame of the streamer and
   /// begins the next, so that what no globe asked for is cancelled, and empties the gauges that globes add to:
   /// chunks and texture pool.
@@ -66,6 +72,7 @@ class GlobeServices {
   CapabilitiesLoader capabilities_;
   TileStreamer streamer_;
   TexturePoolShares poolShares_;
+  TokenFolder tokenFolder_;
   std::uint64_t frame_ = ~std::uint64_t{0};
 };
 

@@ -17,6 +17,7 @@ class GlobeBrowsingModule final : public Module {
 
   Result<void> initialize(Host& host) override {
     services_ = std::make_unique<GlobeServices>(*this, host.statistics(), host.paths().cache);
+    services_->setTokenFolder([&host](std::string_view name) { return host.pathToken(name); });
     servers_.setLoader(
         [this](const MapServer& server, std::function<void(MapServers::Offer)> done) {
           services_->capabilities().load(server, std::move(done));

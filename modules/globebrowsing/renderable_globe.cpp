@@ -75,7 +75,7 @@ RenderableGlobe::RenderableGlobe(std::shared_ptr<const Tiling> tiling, GlobeServ
     : Renderable("RenderableGlobe"),
       tiling_(std::move(tiling)),
       services_(services),
-      layers_({&services.workers(), &services.streamer(), services.sourceTiles()}) {
+      layers_({&services.workers(), &services.streamer(), services.sourceTiles(), services.tokenFolder()}) {
   addProperties();
 }
 
@@ -127,9 +127,9 @@ Result<void> RenderableGlobe::load(const RenderableRequest& request) {
     notes_.push_back(noteOf(unknown, request.where + ": Renderable"));
   }
   if (const Value* layers = request.table.find("Layers")) {
-    layerErrors_ = layers_.load(*layers, request.where, "Renderable.Layers", request.folder);
-    for (const Error& error : layerErrors_) {
-      log::error("{}", error.message());
+    refusedLayers_ = layers_.load(*layers, request.where, "Renderable.Layers", request.folder);
+    for (const RefusedLayer& refused : refusedLayers_) {
+      log::error("{}", refused.error.message());
     }
   }
   return {};
@@ -287,6 +287,14 @@ void RenderableGlobe::addAttributions(std::vector<std::string_view>& list) const
   }
 }
 
+std::size_t RenderableGlobe::numberOfNext(LayerGroupId group) const {
+  const std::string start(globebrowsing::name(group));
+  const auto refused = std::count_if(refusedLayers_.begin(), refusedLayers_.end(), [&](const RefusedLayer& one) {
+    return one.name.starts_with(start + '.') || one.name.starts_with(start + '[');
+  });
+  return layers_.group(group).layers().size() + static_cast<std::size_t>(refused) + 1;
+}
+
 Result<Layer*> RenderableGlobe::addLayer(const std::string& group, const ProviderRequest& request, bool isUsers) {
   const std::optional<NamedGroup> named = layerGroupFromName(group);
   const Value* identifier = request.table.find("Identifier");
@@ -296,7 +304,10 @@ Result<Layer*> RenderableGlobe::addLayer(const std::string& group, const Provide
     log::info("{}: {} has a layer {} already; the other one is left out", request.where, group, *identifier->string());
     return nullptr;
   }
-  Result<Layer*> added = layers_.addLayer(group, request);
+  const std::size_t number = named ? numberOfNext(named->group) : 1;
+  ProviderRequest placed = request;
+  placed.path += ' ' + layerName(group, request.table, number);
+  Result<Layer*> added = layers_.addLayer(group, placed);
   if (added && isUsers) {
     (*added)->setUsers();
   }
@@ -304,7 +315,7 @@ Result<Layer*> RenderableGlobe::addLayer(const std::string& group, const Provide
     return added;
   }
   log::error("{}", added.error().message());
-  layerErrors_.push_back(added.error());
+  refusedLayers_.push_back({layerName(globebrowsing::name(named->group), request.table, number), added.error()});
   if (identifier != nullptr && identifier->string() != nullptr) {
     refused_.insert(*identifier->string());
   }
@@ -324,8 +335,8 @@ Renderable::Contents RenderableGlobe::contents() const {
       found.notes.insert(found.notes.end(), unknown.begin(), unknown.end());
     }
   }
-  for (const Error& error : layerErrors_) {
-    found.layers.push_back({"refused", error});
+  for (const RefusedLayer& refused : refusedLayers_) {
+    found.layers.push_back({refused.name, refused.error});
   }
   return found;
 }

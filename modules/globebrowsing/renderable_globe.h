@@ -21,7 +21,7 @@ namespace meridian::globebrowsing {
 class RenderableGlobe final : public Renderable, public Ground {
  public:
   /// Errors: a table that fails the schema, radii that are no ellipsoid. A layer that is wrong is left out and its
-  /// error kept in layerErrors(). `services` outlives the globe.
+  /// error kept in refusedLayers(). `services` outlives the globe.
   [[nodiscard]] static Result<std::unique_ptr<Renderable>> create(const RenderableRequest& request,
                                                                   GlobeServices& services);
   ~RenderableGlobe() override;
@@ -30,11 +30,13 @@ class RenderableGlobe final : public Renderable, public Ground {
   [[nodiscard]] static const Schema& schema();
 
   [[nodiscard]] LayerManager& layers() { return layers_; }
-  /// Adds a layer by its table, as scripts do: one that is wrong is logged, kept in layerErrors() and left out, and an
-  /// identifier that the group has is left out with a note in the log; null then. `isUsers`: rather than an asset's.
+  /// Adds a layer by its table, as scripts do: one that is wrong is logged, kept in refusedLayers() and left out, and
+  /// an identifier that the group has is left out with a note in the log; null then. `isUsers`: rather than an asset's.
+  /// `request.path` is what adds it ("addLayer"); errors have the layer's name after that.
   /// Errors: an unknown group.
   Result<Layer*> addLayer(const std::string& group, const ProviderRequest& request, bool isUsers = false);
-  [[nodiscard]] const std::vector<Error>& layerErrors() const { return layerErrors_; }
+  /// In the order of their being refused.
+  [[nodiscard]] const std::vector<RefusedLayer>& refusedLayers() const { return refusedLayers_; }
   /// Whether addLayer left out a layer of that name because its table was wrong.
   [[nodiscard]] bool wasRefused(const std::string& identifier) const { return refused_.count(identifier) != 0; }
 
@@ -85,6 +87,8 @@ class RenderableGlobe final : public Renderable, public Ground {
   RenderableGlobe(std::shared_ptr<const Tiling> tiling, GlobeServices& services);
   void addProperties();
   Result<void> load(const RenderableRequest& request);
+  /// The place of the next layer of a group, from 1, if those that were refused count.
+  [[nodiscard]] std::size_t numberOfNext(LayerGroupId group) const;
   /// In pixels, of the view that shows it largest.
   [[nodiscard]] double apparentRadius(const FrameContext& frame) const;
   [[nodiscard]] bool isInView(const FrameContext& frame) const;
@@ -98,7 +102,7 @@ class RenderableGlobe final : public Renderable, public Ground {
   std::shared_ptr<const Tiling> tiling_;
   GlobeServices& services_;
   LayerManager layers_;
-  std::vector<Error> layerErrors_;
+  std::vector<RefusedLayer> refusedLayers_;
   std::set<std::string> refused_;  ///< identifiers of layers that addLayer left out
   std::vector<Error> notes_;
   graphics::Graphics* graphics_ = nullptr;

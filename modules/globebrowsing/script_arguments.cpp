@@ -5,23 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "globebrowsing/providers/layer_paths.h"
-
 namespace meridian::globebrowsing {
 
 namespace {
-
-/// Paths may begin with a token such as ${SYNC}; what the host does not know is left as it is.
-Value withTokensReplaced(const Host& host, const Value& table) {
-  return withPaths(table, [&](const std::string& path) {
-    if (path.starts_with("${")) {
-      if (const auto whole = host.readablePath(path)) {
-        return whole->string();
-      }
-    }
-    return path;
-  });
-}
 
 void noteLayer(Host& host, const std::string& node, const Layer& layer) {
   const auto takeBack = [&host, node, group = layer.group(), identifier = layer.identifier(),
@@ -79,10 +65,8 @@ Result<void> addLayerFromScript(Host& host, const Value& node, const std::string
   return globe(host, node)
       .and_then([&](RenderableGlobe* found) {
         Host::ScriptPlace place = host.scriptPlace();
-        return found->addLayer(
-            group,
-            {withTokensReplaced(host, table), std::move(place.where), "addLayer " + group, std::move(place.folder)},
-            !place.isAsset);
+        return found->addLayer(group, {table, std::move(place.where), "addLayer", std::move(place.folder)},
+                               !place.isAsset);
       })
       .map([&](const Layer* added) {
         if (added != nullptr) {

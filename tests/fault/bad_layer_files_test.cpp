@@ -118,7 +118,7 @@ TEST_F(BadLayerFilesTest, PixelsThatEndHalfWay) {
   RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({fileLayer("Good", good_), fileLayer("Bad", path)})}});
   ASSERT_TRUE(settle());
   const Layer* layer = globe.layers().group(LayerGroupId::ColorLayers).find("Bad");
-  EXPECT_THAT(layer->lastError.get(), HasSubstr("Layers.ColorLayers[2].FilePath"));
+  EXPECT_THAT(layer->lastError.get(), HasSubstr("Layers.ColorLayers.Bad.FilePath"));
   EXPECT_THAT(layer->lastError.get(), HasSubstr("cannot be read"));
   EXPECT_GT(statistics_.tiles.failed.load(), 0U);
   EXPECT_NE(centre(), (Pixel{0, 0, 0}));

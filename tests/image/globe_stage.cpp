@@ -78,8 +78,8 @@ GlobeStage::GlobeStage(graphics::Context& context, const SmoothWorld& world, con
   table.fields["Layers"] = std::move(groups);
   renderable_ = valueOf(RenderableGlobe::create({std::move(table), world.name, folder.string(), "World"}, *services_));
   globe_ = dynamic_cast<RenderableGlobe*>(renderable_.get());
-  if (!globe_->layerErrors().empty()) {
-    throw std::runtime_error(globe_->layerErrors().front().message());
+  if (!globe_->refusedLayers().empty()) {
+    throw std::runtime_error(globe_->refusedLayers().front().error.message());
   }
   if (Result<void> made = globe_->initializeGraphics(*graphics_); !made) {
     throw std::runtime_error(made.error().message());

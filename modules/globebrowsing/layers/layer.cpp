@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "globebrowsing/providers/layer_paths.h"
+#include "globebrowsing/providers/path_tokens.h"
 #include "globebrowsing/streaming/tile_streamer.h"
 #include "host/api/log.h"
 
@@ -200,7 +201,7 @@ Value Layer::table() const {
       }
     }
   }
-  return withWholePaths(table, request_.folder);
+  return withWholePaths(withTokensReplaced(table, services_.tokenFolder), request_.folder);
 }
 
 bool Layer::isReady() const {
@@ -216,6 +217,7 @@ bool Layer::isOpening() const {
 }
 
 void Layer::restart(ProviderRequest request) {
+  request.table = withTokensReplaced(request.table, services_.tokenFolder);
   Result<std::shared_ptr<TileProvider>> provider = makeProvider(request);
   if (!provider) {
     lastError.put(provider.error().message());

@@ -14,6 +14,7 @@
 #include "globebrowsing/layers/layer_group.h"
 #include "globebrowsing/layers/step_player.h"
 #include "globebrowsing/layers/structure_key.h"
+#include "globebrowsing/providers/path_tokens.h"
 #include "globebrowsing/providers/relief_style.h"
 #include "globebrowsing/providers/tile_provider.h"
 #include "host/api/property.h"
@@ -30,6 +31,7 @@ struct LayerServices {
   WorkerPool* workers = nullptr;
   TileStreamer* streamer = nullptr;
   std::shared_ptr<SourceTileStore> sourceTiles{};  ///< of map services
+  TokenFolder tokenFolder{};  ///< of the path tokens in tables and properties; empty: there are none
 };
 
 /// One layer of a globe: its provider, and its properties below Layers.GROUP.IDENTIFIER. Render thread only.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "globebrowsing/providers/default_tile_provider.h"
 #include "globebrowsing/providers/tiles_table.h"
 #include "globebrowsing/source/service_text.h"
 
@@ -119,18 +118,20 @@ Error noteOf(const UnknownKey& unknown, const std::string& where) {
 }
 
 std::vector<Error> unknownLayerKeys(const ProviderRequest& request) {
-  // Those that did something once, and those that the host adds.
-  static constexpr std::string_view ignored[] = {"PadTiles", "Fallback", "GlobeName", "LayerGroupID"};
+  // Those that did something once or do so in OpenSpace, those that the host adds, and older names of others.
+  static constexpr std::string_view ignored[] = {"PadTiles",        "Fallback",          "GlobeName",
+                                                 "LayerGroupID",    "CacheSettings",     "PerformPreProcessing",
+                                                 "DefaultProvider", "IndexTileProviders"};
   std::vector<Error> notes;
   const std::span<const ProviderType> types = providerTypes();
   const Result<LayerType> type = layerTypeOf(request);
   const auto provider =
       std::find_if(types.begin(), types.end(), [&](const auto& one) { return type && one.type == *type; });
   if (provider != types.end()) {
-    // Series hand their rasters' keys on.
+    // Their steps are rasters with the keys of the layer.
     const bool hasRasters = *type == LayerType::TemporalTileProvider || *type == LayerType::ImageSequenceTileProvider;
-    const Schema* rasters = hasRasters ? &DefaultTileProvider::schema() : provider->schema;
-    for (const UnknownKey& unknown : unknownKeys(request.table, {&layerSchema(), provider->schema, rasters}, ignored)) {
+    const Schema& raster = hasRasters ? providerSchema(LayerType::DefaultTileProvider) : *provider->schema;
+    for (const UnknownKey& unknown : unknownKeys(request.table, {&layerSchema(), provider->schema, &raster}, ignored)) {
       notes.push_back(noteOf(unknown, placeOf(request, {})));
     }
     for (const UnknownTilesKey& unknown : unknownTilesKeys(request)) {

@@ -173,34 +173,44 @@ LayerManager::LayerManager(const LayerServices& services)
   }
 }
 
-std::vector<Error> LayerManager::load(const Value& layers, const std::string& where, const std::string& path,
-                                      const std::string& folder) {
+std::string layerName(std::string_view group, const Value& table, std::size_t number) {
+  const Value* identifier = table.find("Identifier");
+  const std::string* text = identifier == nullptr ? nullptr : identifier->string();
+  return text == nullptr || text->empty() ? fmt::format("{}[{}]", group, number) : fmt::format("{}.{}", group, *text);
+}
+
+std::vector<RefusedLayer> LayerManager::load(const Value& layers, const std::string& where, const std::string& path,
+                                             const std::string& folder) {
   const auto place = [&](const std::string& key) { return placeOf({{}, where, path, folder}, key); };
   if (!layers.isTable()) {
-    return {{fmt::format("expected a table of layer groups, found {}", kindName(layers.kind())), place({}), {}}};
+    return {{"Layers",
+             {fmt::format("expected a table of layer groups, found {}", kindName(layers.kind())), place({}), {}}}};
   }
-  std::vector<Error> errors;
+  std::vector<RefusedLayer> refused;
   for (const auto& [groupName, value] : layers.table()->fields) {
-    if (Result<NamedGroup> known = requireGroup(groupName, place(groupName)); !known) {
-      errors.push_back(std::move(known.error()));
+    const Result<NamedGroup> known = requireGroup(groupName, place(groupName));
+    if (!known) {
+      refused.push_back({groupName, known.error()});
       continue;
     }
     const Table* table = value.table();
     if (table == nullptr || (table->list.empty() && !table->fields.empty())) {
-      errors.push_back({fmt::format("expected a list of layers, found {}",
-                                    table == nullptr ? kindName(value.kind()) : "a table with names"),
-                        place(groupName), "write { { Identifier = ... }, { Identifier = ... } }"});
+      refused.push_back({groupName,
+                         {fmt::format("expected a list of layers, found {}",
+                                      table == nullptr ? kindName(value.kind()) : "a table with names"),
+                          place(groupName), "write { { Identifier = ... }, { Identifier = ... } }"}});
       continue;
     }
     for (std::size_t i = 0; i < table->list.size(); ++i) {
-      const std::string layerPath =
-          fmt::format("{}{}{}[{}]", path, path.empty() ? "" : ".", groupName, i + 1);  // as Lua counts
+      const std::size_t number = i + 1;  // as Lua counts
+      const std::string layerPath = (path.empty() ? path : path + '.') + layerName(groupName, table->list[i], number);
       if (Result<Layer*> added = addLayer(groupName, {table->list[i], where, layerPath, folder}); !added) {
-        errors.push_back(std::move(added.error()));
+        refused.push_back(
+            {layerName(globebrowsing::name(known->group), table->list[i], number), std::move(added.error())});
       }
     }
   }
-  return errors;
+  return refused;
 }
 
 Result<Layer*> LayerManager::addLayer(std::string_view groupName, const ProviderRequest& request) {
@@ -210,6 +220,7 @@ Result<Layer*> LayerManager::addLayer(std::string_view groupName, const Provider
   }
   ProviderRequest served = request;
   served.sourceTiles = services_.sourceTiles;
+  served.table = withTokensReplaced(served.table, services_.tokenFolder);
   return readLayer(served, named->group, named->blendMode).and_then([&](LayerDescription description) {
     return group(named->group).add(std::move(description), services_);
   });

@@ -70,6 +70,16 @@ class LayerGroup final : public PropertyOwner {
   std::uint64_t lastLayerVersion_ = 0;
 };
 
+/// How messages call a layer: "ColorLayers.Blue", or by its number in the group, from 1, where its table has no
+/// Identifier: "ColorLayers[3]".
+[[nodiscard]] std::string layerName(std::string_view group, const Value& table, std::size_t number);
+
+/// A layer that was left out.
+struct RefusedLayer {
+  std::string name;  ///< as layerName tells; of a whole group: its name
+  Error error;
+};
+
 /// All layers of a globe: the owner `Layers`. Render thread only.
 class LayerManager final : public PropertyOwner {
  public:
@@ -77,9 +87,9 @@ class LayerManager final : public PropertyOwner {
   explicit LayerManager(const LayerServices& services = {});
 
   /// An asset's `Layers`: groups by name, each a list of layer tables. What is wrong is left out and told; the rest
-  /// loads. `path` is the table's key path ("Renderable.Layers").
-  std::vector<Error> load(const Value& layers, const std::string& where, const std::string& path,
-                          const std::string& folder);
+  /// loads. `path` is the table's key path ("Renderable.Layers"); that of a layer is followed by its layerName.
+  std::vector<RefusedLayer> load(const Value& layers, const std::string& where, const std::string& path,
+                                 const std::string& folder);
 
   /// Group by any of its names. Errors: an unknown group, a table that fails validation, an identifier in use.
   Result<Layer*> addLayer(std::string_view group, const ProviderRequest& request);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "globebrowsing/providers/path_tokens.h"
 #include "globebrowsing/providers/tiles_table.h"
 #include "globebrowsing/source/tiled_service_source.h"
 #include "host/api/log.h"
@@ -79,11 +80,14 @@ DataPath dataPath(const std::string& filePath, const std::string& folder) {
 
 Result<void> checkData(const DataPath& path, const std::string& where) {
   if (path.kind != DataPath::Kind::File) {
-    return {};
+    return checkTokens(path.text, where);
   }
   std::error_code code;
   const std::filesystem::file_status status = std::filesystem::status(path.text, code);
   if (!std::filesystem::exists(status)) {
+    if (Result<void> checked = checkTokens(path.text, where); !checked) {
+      return checked;
+    }
     return failure("the data file " + path.text + " does not exist", where,
                    "check the path; a relative one starts at the asset's folder");
   }

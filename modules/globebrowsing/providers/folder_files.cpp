@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "globebrowsing/providers/path_tokens.h"
+
 namespace meridian::globebrowsing {
 
 namespace {
@@ -19,6 +21,9 @@ Result<void> checkFolder(const std::string& folder, const std::string& where) {
   std::error_code code;
   const std::filesystem::file_status status = std::filesystem::status(folder, code);
   if (!std::filesystem::exists(status)) {
+    if (Result<void> checked = checkTokens(folder, where); !checked) {
+      return checked;
+    }
     return failure("the folder " + folder + " does not exist", where,
                    "check the path; a relative one starts at the asset's folder");
   }

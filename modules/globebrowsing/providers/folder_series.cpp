@@ -16,7 +16,8 @@ const Schema& folderSchema() {
   using Type = Schema::Type;
   static const Schema fields(
       {{"Folder", Type::String, "the folder of the files, one for each step", true},
-       {"Format", Type::String, "how their names begin: %Y %m %d %H %M %S %j %U %y %b and other text", true}});
+       {"Format", Type::String, "how their names begin, as std::get_time reads it: %Y %m %d %j %H %M and other text",
+        true}});
   return fields;
 }
 
@@ -30,23 +31,25 @@ Result<std::unique_ptr<RasterSeries>> FolderSeries::make(const ProviderRequest& 
   Result<TimeFileName> reader = TimeFileName::create(*valueAt(own.table, "Format").string());
   if (!reader) {
     reader.error().where = placeOf(own, "Format");
-    return tl::make_unexpected(std::move(reader.error()));
   }
   return std::unique_ptr<RasterSeries>(new FolderSeries(folderPath(*valueAt(own.table, "Folder").string(), own.folder),
-                                                        std::move(*reader), placeOf(own, "Folder")));
+                                                        std::move(reader), placeOf(own, "Folder")));
 }
 
 Result<void> FolderSeries::check() const {
-  return checkFolder(folder_, where_);
+  return reader_ ? checkFolder(folder_, where_) : tl::make_unexpected(reader_.error());
 }
 
 Result<void> FolderSeries::open() {
+  if (!reader_) {
+    return tl::make_unexpected(reader_.error());
+  }
   Result<std::vector<std::string>> names = filesIn(folder_, where_);
   if (!names) {
     return tl::make_unexpected(std::move(names.error()));
   }
   for (std::string& name : *names) {
-    if (const std::optional<Instant> instant = reader_.read(name)) {
+    if (const std::optional<Instant> instant = reader_->read(name)) {
       files_.push_back({*instant, std::move(name)});
     }
   }

@@ -6,6 +6,7 @@
 #include "globebrowsing/providers/date_text.h"
 #include "globebrowsing/providers/default_tile_provider.h"
 #include "globebrowsing/providers/inner_providers.h"
+#include "globebrowsing/providers/path_tokens.h"
 #include "globebrowsing/providers/time_picture.h"
 #include "globebrowsing/providers/time_series.h"
 #include "host/api/schema.h"
@@ -107,13 +108,16 @@ Result<std::unique_ptr<RasterSeries>> PrototypedSeries::make(const Description& 
 Result<void> PrototypedSeries::check() const {
   const DataPath path = dataPath(description_.prototype, folder_);
   if (path.kind != DataPath::Kind::File) {
-    return {};
+    return checkTokens(path.text, where_);
   }
   // Not every step need exist; the folder of all of them must.
   const std::string fixed = path.text.substr(0, path.text.find(placeholder));
   const std::filesystem::path folder = std::filesystem::path(fixed).parent_path();
   std::error_code code;
   if (!std::filesystem::is_directory(folder, code)) {
+    if (Result<void> checked = checkTokens(path.text, where_); !checked) {
+      return checked;
+    }
     return failure("the folder " + folder.string() + " does not exist", where_,
                    "check Prototype; a relative path starts at the asset's folder");
   }

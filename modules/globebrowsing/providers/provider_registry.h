@@ -20,14 +20,14 @@ class SourceTileStore;
 struct ProviderRequest {
   Value table;         ///< the layer's table; the provider's keys lie flat among the layer's own
   std::string where;   ///< file and line of the asset, for errors
-  std::string path;    ///< of the table within the asset: "Renderable.Layers.ColorLayers[1]"
+  std::string path;    ///< of the table within the asset: "Renderable.Layers.ColorLayers.Blue"
   std::string folder;  ///< of the asset file; relative paths start there
   /// Where the tiles of map services come from; null where nothing is fetched (--validate).
   std::shared_ptr<SourceTileStore> sourceTiles{};
   std::shared_ptr<SeriesShare> share{};  ///< of the steps of a series; else null
 };
 
-/// The place of a key for errors: "earth.asset:12: Renderable.Layers.ColorLayers[1].FilePath".
+/// The place of a key for errors: "earth.asset:12: Renderable.Layers.ColorLayers.Blue.FilePath".
 [[nodiscard]] std::string placeOf(const ProviderRequest& request, std::string_view key);
 
 /// One type of provider. To add one: write the class, add its line in provider_registry.cpp.

@@ -8,6 +8,7 @@
 #include "globebrowsing/providers/date_text.h"
 #include "globebrowsing/providers/default_tile_provider.h"
 #include "globebrowsing/providers/inner_providers.h"
+#include "globebrowsing/providers/path_tokens.h"
 #include "globebrowsing/providers/service_series.h"
 #include "globebrowsing/providers/temporal_document.h"
 #include "globebrowsing/source/document_file.h"
@@ -129,6 +130,9 @@ std::string TemporalTileProvider::colormapPath() const {
 Result<void> TemporalTileProvider::check() const {
   std::error_code code;
   if (const std::string path = colormapPath(); !path.empty() && !std::filesystem::is_regular_file(path, code)) {
+    if (Result<void> checked = checkTokens(path, placeOf(request_, "Colormap")); !checked) {
+      return checked;
+    }
     return failure("the colormap " + path + " does not exist", placeOf(request_, "Colormap"),
                    "check Colormap; a relative path starts at the asset's folder");
   }

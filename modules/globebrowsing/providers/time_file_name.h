@@ -10,19 +10,21 @@
 
 namespace meridian::globebrowsing {
 
-/// Reads the time that a file's name begins with, by a format like that of std::get_time, without a locale:
-/// %Y %y %m %d %H %M %S %j (day of the year, from 1) %U (week of the year, from its first Sunday) %b %B (English
-/// months) %e %F %T %D %R %n %t %%, literal text, and white space for any amount of it.
+/// Reads the time that a file's name begins with, by a format like that of std::get_time, without a locale: its
+/// conversions %Y %y %C %m %b %B %h %d %e %j %U %W %w %a %A %H %I %p %M %S %D %T %R %r %c %x %X %n %t %%, with E or O
+/// before the letter as well, those that strptime of glibc has besides (%F %G %g %V %u %k %l %P %s), and %z and %Z,
+/// which are read over. Names are English. Other text stands for itself, in upper or lower case, and white space for
+/// any amount of it.
 ///
-/// What the format leaves out is the first of its kind: of a year and a week, the week's Sunday. A field that is
-/// repeated counts as written last. Formats with %M and %H but neither month nor day mean month and day: a slip of
-/// several published assets. Two-digit years are 1969 to 2068 (POSIX).
+/// DateFields tells what becomes of them, and of what the format leaves out. Formats with a year, %M and %H but nothing
+/// that says the day mean month and day by these: a slip of several published assets. %y takes two digits, whatever
+/// follows.
 class TimeFileName {
  public:
-  /// Errors: an unknown conversion; no year.
+  /// Errors: no text at all; an unknown conversion, and one without its letter.
   [[nodiscard]] static Result<TimeFileName> create(std::string_view format);
 
-  /// Nothing when the name does not begin like that, or the calendar has no such time.
+  /// Nothing when the name does not begin with all of it, or the calendar has no such time.
   [[nodiscard]] std::optional<Time::UtcInstant> read(std::string_view name) const;
 
  private:

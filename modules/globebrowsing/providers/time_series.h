@@ -87,11 +87,12 @@ class PrototypedSeries final : public RasterSeries {
 /// The files of a folder, each with the time that its name begins with: Mode = "Folder".
 class FolderSeries final : public RasterSeries {
  public:
-  /// From the asset's table `Folder`. Errors say which key.
+  /// From the asset's table `Folder`. Errors say which key. A format that cannot be read is no error yet: check() and
+  /// open() tell it, so that the layer stays.
   [[nodiscard]] static Result<std::unique_ptr<RasterSeries>> make(const ProviderRequest& request);
 
   [[nodiscard]] Result<void> check() const override;
-  /// Reads the folder. Errors: none of its files has a time.
+  /// Reads the folder. Errors: a format that cannot be read; none of its files has a time.
   [[nodiscard]] Result<void> open() override;
   /// The latest that is not later; before the first, that.
   [[nodiscard]] Entry at(Instant now) const override;
@@ -104,11 +105,11 @@ class FolderSeries final : public RasterSeries {
     Instant instant;
     std::string name;
   };
-  FolderSeries(std::string folder, TimeFileName reader, std::string where)
+  FolderSeries(std::string folder, Result<TimeFileName> reader, std::string where)
       : folder_(std::move(folder)), reader_(std::move(reader)), where_(std::move(where)) {}
 
   std::string folder_;
-  TimeFileName reader_;
+  Result<TimeFileName> reader_;
   std::string where_;
   std::vector<File> files_;  ///< by time, each time once
 };

@@ -1,5 +1,9 @@
 #include "globebrowsing/layers/layer_description.h"
 
+#include <array>
+#include <string_view>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -55,6 +59,50 @@ TEST(LayerDescription, NotesKeysThatNobodyKnows) {
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_THAT(notes[0], testing::HasSubstr("unknown key PixelSzie, did you mean PixelSize"));
   EXPECT_THAT(notes[0], testing::HasSubstr("earth.asset:12: Layer.Tiles"));
+}
+
+/// Section c.3 of openspace-formats.md: the keys of every layer, and those that had a meaning once or have one inside
+/// OpenSpace only.
+constexpr std::array<std::string_view, 17> documentedKeys{
+    "Identifier",   "Name",          "Description",         "Type",      "Enabled",  "ZIndex",   "Opacity",
+    "Color",        "Settings",      "Adjustment",          "BlendMode", "PadTiles", "Fallback", "GlobeName",
+    "LayerGroupID", "CacheSettings", "PerformPreProcessing"};
+
+struct DocumentedType {
+  const char* type;
+  std::vector<std::string_view> keys;  ///< section c.4, and d.1 of those that follow time
+};
+
+TEST(LayerDescription, EveryDocumentedKeyIsUsedOrIgnored) {
+  for (const auto& [type, keys] : {
+           DocumentedType{"DefaultTileProvider", {"FilePath", "TilePixelSize"}},
+           DocumentedType{"SingleImageProvider", {"FilePath"}},
+           DocumentedType{"ImageSequenceTileProvider", {"FolderPath", "Index", "TilePixelSize"}},
+           DocumentedType{"SizeReferenceTileProvider", {"Radii"}},
+           DocumentedType{"TileIndexTileProvider", {"UniqueBackgroundColors"}},
+           DocumentedType{"TileProviderByDate", {"Providers"}},
+           DocumentedType{"TileProviderByIndex",
+                          {"DefaultTileProvider", "TileProviders", "DefaultProvider", "IndexTileProviders"}},
+           DocumentedType{"TileProviderByLevel", {"LevelTileProviders"}},
+           DocumentedType{"SolidColor", {}},
+           DocumentedType{"TemporalTileProvider",
+                          {"Mode", "Prototyped", "Folder", "Interpolation", "Colormap", "UseFixedTime", "FixedTime",
+                           "FilePath", "TilePixelSize"}},
+       }) {
+    Fields fields;
+    for (const std::string_view key : documentedKeys) {
+      fields[std::string(key)] = true;
+    }
+    for (const std::string_view key : keys) {
+      fields[std::string(key)] = true;
+    }
+    fields["Type"] = type;
+    for (const Error& note : unknownLayerKeys(requestFor(tableOf(fields)))) {
+      ADD_FAILURE() << type << ": " << note.message();
+    }
+    fields["CacheSetting"] = true;
+    EXPECT_EQ(unknownLayerKeys(requestFor(tableOf(fields))).size(), 1U) << type;
+  }
 }
 
 TEST(LayerDescription, DefaultsAreTheFormatsDefaults) {

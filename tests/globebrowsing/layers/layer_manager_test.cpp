@@ -156,25 +156,30 @@ TEST_F(LayerManagerTest, RemoveTakesEffectInTheNextUpdate) {
 }
 
 TEST_F(LayerManagerTest, ABadLayerIsLeftOutAndTheOthersLoad) {
-  const Value layers = tableOf({{"ColorLayers", listOf({solidLayer("a"), solidLayer("a"),
-                                                        tableOf({{"Identifier", "b"}}), solidLayer("BlendTileLevels"),
-                                                        solidLayer("c", {{"Opacity", "much"}}), solidLayer("d")})},
-                                {"ColorOverlays", listOf({solidLayer("e")})},
-                                {"Rings", listOf({solidLayer("f")})},
-                                {"NightLayers", tableOf({{"Identifier", "g"}})},
-                                {"WaterMasks", listOf({})}});
-  const std::vector<Error> errors = manager_.load(layers, "earth.asset:3", "Renderable.Layers", "/data");
+  const Value layers =
+      tableOf({{"ColorLayers",
+                listOf({solidLayer("a"), solidLayer("a"), tableOf({{"Identifier", "b"}}), solidLayer("BlendTileLevels"),
+                        solidLayer("c", {{"Opacity", "much"}}), solidLayer("d"), tableOf({{"Type", "SolidColor"}})})},
+               {"ColorOverlays", listOf({solidLayer("e")})},
+               {"Rings", listOf({solidLayer("f")})},
+               {"NightLayers", tableOf({{"Identifier", "g"}})},
+               {"WaterMasks", listOf({})}});
+  const std::vector<RefusedLayer> refused = manager_.load(layers, "earth.asset:3", "Renderable.Layers", "/data");
   EXPECT_THAT(order(), ElementsAre("a", "d"));
   EXPECT_NE(manager_.group(LayerGroupId::Overlays).find("e"), nullptr);
   EXPECT_EQ(manager_.layerCount(), 3U);
   std::vector<std::string> places;
-  for (const Error& error : errors) {
+  std::vector<std::string> names;
+  for (const auto& [name, error] : refused) {
+    names.push_back(name);
     places.push_back(error.where);
   }
   const std::string start = "earth.asset:3: Renderable.Layers.";
-  EXPECT_THAT(places, ElementsAre(start + "ColorLayers[2].Identifier", start + "ColorLayers[3].FilePath",
-                                  start + "ColorLayers[4].Identifier", start + "ColorLayers[5].Opacity",
-                                  start + "NightLayers", start + "Rings"));
+  EXPECT_THAT(places, ElementsAre(start + "ColorLayers.a.Identifier", start + "ColorLayers.b.FilePath",
+                                  start + "ColorLayers.BlendTileLevels.Identifier", start + "ColorLayers.c.Opacity",
+                                  start + "ColorLayers[7].Identifier", start + "NightLayers", start + "Rings"));
+  EXPECT_THAT(names, ElementsAre("ColorLayers.a", "ColorLayers.b", "ColorLayers.BlendTileLevels", "ColorLayers.c",
+                                 "ColorLayers[7]", "NightLayers", "Rings"));
   EXPECT_EQ(manager_.load("text", "x", "Layers", "").size(), 1U);
 }
 

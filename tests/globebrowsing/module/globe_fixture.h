@@ -64,6 +64,10 @@ class FakeHost final : public Host {
     return names;
   }
 
+  [[nodiscard]] std::optional<std::filesystem::path> pathToken(std::string_view name) const override {
+    const auto found = tokens.find(name);
+    return found == tokens.end() ? std::nullopt : std::optional(found->second);
+  }
   [[nodiscard]] ScriptPlace scriptPlace() const override { return {place, folder, isAsset}; }
   [[nodiscard]] Result<std::filesystem::path> readablePath(std::string_view path) const override {
     return std::filesystem::path(path).is_absolute() ? std::filesystem::path(path)
@@ -86,6 +90,7 @@ class FakeHost final : public Host {
   }
 
   std::map<std::string, std::function<void()>> registrations;
+  std::map<std::string, std::filesystem::path, std::less<>> tokens;
   std::string place = "test.lua:1";  ///< of the script that runs
   std::string folder;
   bool isAsset = false;  ///< as what scripts run

@@ -238,16 +238,6 @@ TEST_F(MapServerPanelTest, ScriptsWriteTheLayersThatScriptsAdded) {
   EXPECT_THAT(text, HasSubstr(host_.folder + "/a.tif")) << "the asset lies elsewhere than the script";
 }
 
-TEST_F(MapServerPanelTest, TokensAreReplacedInAllPathsOfAScriptsLayer) {
-  ASSERT_TRUE(engine_.run(
-      "openspace.globebrowsing.addLayer('Earth', 'ColorLayers', { Identifier = 'A', Colormap = '${A}/c.png', "
-      "Type = 'TemporalTileProvider', Folder = { Folder = '${A}/days', Format = '%Y' } })",
-      "test.lua"));
-  const Value table = globe("Earth").layers().group(LayerGroupId::ColorLayers).layers()[0]->request().table;
-  EXPECT_EQ(*table.find("Colormap")->string(), host_.folder + "/${A}/c.png") << "as this host has them";
-  EXPECT_EQ(*table.find("Folder")->find("Folder")->string(), host_.folder + "/${A}/days");
-}
-
 TEST_F(MapServerPanelTest, WithoutGlobesItSaysSo) {
   host_.renderables.clear();
   EXPECT_EQ(build().texts.size(), 1U);

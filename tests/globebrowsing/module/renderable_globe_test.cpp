@@ -31,10 +31,10 @@ TEST_F(RenderableGlobeTest, AWrongLayerIsLeftOutAndTold) {
       {{"ColorLayers", listOf({solidLayer("Good", {0, 1, 0}), tableOf({{"Type", "SolidColor"}}),
                                solidLayer("Good", {1, 0, 0}), solidLayer("Other", {0, 0, 1}, {{"Opacity", 7.0}})})},
        {"NoSuchGroup", listOf({})}});
-  ASSERT_EQ(globe.layerErrors().size(), 4U);
-  for (const Error& error : globe.layerErrors()) {
+  ASSERT_EQ(globe.refusedLayers().size(), 4U);
+  for (const auto& [name, error] : globe.refusedLayers()) {
     EXPECT_THAT(error.where, HasSubstr("test.asset:7")) << error.message();
-    EXPECT_THAT(error.where, HasSubstr("Renderable.Layers")) << error.message();
+    EXPECT_THAT(error.where, HasSubstr("Renderable.Layers." + name)) << error.message();
   }
   ASSERT_TRUE(settle());
   EXPECT_EQ(centre(), (Pixel{0, 255, 0}));

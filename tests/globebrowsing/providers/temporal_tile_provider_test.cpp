@@ -285,7 +285,6 @@ TEST_F(TemporalTileProviderTest, SaysWhatIsWrongWithItsTable) {
       {prototyped({{"TemporalResolution", "0d"}}), "Prototyped.TemporalResolution"},
       {prototyped({{"TimeFormat", "YYYY ::TDB"}}), "Prototyped.TimeFormat"},
       {prototyped({{"Prototype", "world.tif"}}), "Prototyped.Prototype"},
-      {inFolder(".", "world.tif"), "Folder.Format"},
   };
   for (const auto& [fields, key] : table) {
     const auto made = makeProvider(requestFor(fields, folder_.path()));
@@ -308,6 +307,8 @@ TEST_F(TemporalTileProviderTest, SaysWhatIsWrongWithItsData) {
        {Case{inFolder("gone"), false, "does not exist"}, Case{inFolder("large.xml"), false, "is not a folder"},
         Case{inFolder("nothing"), true, "none of the 0 files"},
         Case{inFolder(".", "moon.%Y"), true, "none of the 5 files"},
+        Case{inFolder(".", "world.%Q"), false, "Folder.Format: the format \"world.%Q\" has an unknown conversion %Q"},
+        Case{inFolder(".", ""), false, "the format is empty"},
         Case{{{"Type", "TemporalTileLayer"}, {"FilePath", "gone.xml"}}, false, "does not exist"},
         Case{{{"Type", "TemporalTileLayer"}, {"FilePath", "large.xml"}}, true, "longer than"},
         Case{{{"Type", "TemporalTileLayer"}, {"FilePath", "empty.xml"}}, true, "no XML"},

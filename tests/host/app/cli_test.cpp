@@ -11,65 +11,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
+#include "cli_fixture.h"
 #include "host/graphics/image.h"
 
+namespace meridian::app {
 namespace {
 
-namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-struct Outcome {
-  int code = -1;  ///< 128 + signal when one ended it
-  std::string out;
-  std::string errors;
-};
-
-std::string readFile(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-class CommandLine : public ::testing::Test {
- protected:
-  CommandLine() {
-    std::string path = (fs::temp_directory_path() / "meridian-cli-XXXXXX").string();
-    folder_ = mkdtemp(path.data());
-  }
-  ~CommandLine() override { fs::remove_all(folder_); }
-
-  fs::path in(const std::string& name) const { return folder_ / name; }
-
-  fs::path write(const std::string& name, const std::string& text) const {
-    fs::create_directories(in(name).parent_path());
-    std::ofstream(in(name)) << text;
-    return in(name);
-  }
-
-  /// An asset of one node that shows nothing.
-  fs::path emptyScene() const {
-    return write("empty.asset", R"(
-      local node = { Identifier = "Place", BoundingSphere = 1000.0 }
-      asset.onInitialize(function() openspace.addSceneGraphNode(node) end)
-      asset.onDeinitialize(function() openspace.removeSceneGraphNode(node) end)
-    )");
-  }
-
-  /// `arguments` as typed in a shell; without any display. `prefix`: environment and such. In the foreground, because
-  /// otherwise `timeout` passes a signal on twice, and the second kills at once.
-  Outcome run(const std::string& arguments, const std::string& prefix = "") const {
-    const std::string command = "cd '" + folder_.string() + "' && env -u DISPLAY -u WAYLAND_DISPLAY " + prefix +
-                                " timeout --foreground 60 '" MERIDIAN_PROGRAM "' " + arguments +
-                                " >out.txt 2>errors.txt";
-    const int status = std::system(command.c_str());
-    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    return {code, readFile(in("out.txt")), readFile(in("errors.txt"))};
-  }
-
-  fs::path folder_;
-};
 
 TEST_F(CommandLine, HelpGoesToStandardOutput) {
   const Outcome outcome = run("--help");
@@ -230,39 +180,6 @@ TEST_F(CommandLine, AnAssetThatFailedIsReloadedWholly) {
   if (hasGlobes) {
     EXPECT_THAT(outcome.errors, HasSubstr("layers Good\n"));
   }
-}
-
-TEST_F(CommandLine, ValidateCountsAndEndsWithThree) {
-  write("assets/good.asset", "asset.export('number', 3)\n");
-  write("assets/below/bad.asset", "local = 3\n");
-  const Outcome bad = run("--validate assets");
-  EXPECT_EQ(bad.code, 3);
-  EXPECT_EQ(bad.out, "assets 1 ok 1 failed; globes 0; layers 0 usable 0\n");
-  EXPECT_THAT(bad.errors, HasSubstr("bad.asset:1"));
-  const Outcome good = run("--validate assets/good.asset");
-  EXPECT_EQ(good.code, 0) << good.errors;
-  EXPECT_EQ(good.out, "assets 1 ok 0 failed; globes 0; layers 0 usable 0\n");
-  const Outcome missing = run("--validate nowhere");
-  EXPECT_EQ(missing.code, 3);
-  EXPECT_THAT(missing.errors, HasSubstr("nowhere"));
-}
-
-TEST_F(CommandLine, ValidatesAssetsOfAllDialects) {
-  const Outcome outcome = run("--validate '" MERIDIAN_SOURCE_FOLDER "/tests/host/app/dialects/assets'");
-  if (outcome.errors.find("globes need the module") != std::string::npos) {
-    GTEST_SKIP() << "built without the module that brings globes";
-  }
-  EXPECT_EQ(outcome.code, 0) << outcome.errors;
-  // Current: 11 layers of its own, 5 added, 2 of a patch; middle: 11; old: 6.
-  EXPECT_THAT(outcome.out, HasSubstr("assets 6 ok 0 failed; globes 4; layers 35 usable "));
-  EXPECT_THAT(outcome.errors, HasSubstr("CurrentGlobe ColorLayers.Local is usable"));
-  EXPECT_THAT(outcome.errors, HasSubstr("MiddleGlobe ColorLayers.Map is usable"));
-  EXPECT_THAT(outcome.errors, HasSubstr("OldGlobe Overlays.Lines is usable"));
-  EXPECT_THAT(outcome.errors, HasSubstr("OldGlobe ColorLayers.Grey is usable"));
-  EXPECT_THAT(outcome.errors, HasSubstr("CurrentGlobe ColorLayers.Whole is not usable"));
-  EXPECT_THAT(outcome.errors, HasSubstr("no videos are played"));
-  EXPECT_THAT(outcome.errors, HasSubstr("unknown key Enable, did you mean Enabled"));
-  EXPECT_THAT(outcome.errors, Not(HasSubstr("warning not available:"))) << "nothing asserted by the assets failed";
 }
 
 TEST_F(CommandLine, ShowsProfiles) {
@@ -519,3 +436,4 @@ TEST_F(CommandLine, AnUnwritableCacheOnlyWarns) {
 }
 
 }  // namespace
+}  // namespace meridian::app
