@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "globebrowsing/source/gdal_network.h"
 #include "globebrowsing/source/tile_decoder.h"
 
 namespace meridian::globebrowsing {
@@ -49,11 +50,13 @@ GlobeServices::GlobeServices(PropertyOwner& owner, Statistics& statistics, const
   };
   setBudget();
   tileCacheSize.onChange(setBudget);
+  setGdalNetwork(network);
 }
 
 void GlobeServices::setNetwork(const NetworkOptions& options) {
   fetcher_->setOptions(options);
   *imageLimits_ = options.images;
+  setGdalNetwork(options);
 }
 
 GlobeServices::~GlobeServices() {

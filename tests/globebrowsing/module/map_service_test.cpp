@@ -5,6 +5,7 @@
 
 #include "globe_fixture.h"
 #include "globebrowsing/globe_services.h"
+#include "globebrowsing/source/gdal_network.h"
 #include "support/nginx_server.h"
 #include "support/server_process.h"
 #include "support/timed_pyramid.h"
@@ -228,9 +229,12 @@ TEST_F(CapabilitiesLoaderTest, SaysWhyThereAreNone) {
 TEST_F(CapabilitiesLoaderTest, TheCacheOfTheNetworkIsSetByProperties) {
   EXPECT_TRUE(owner_.property("NetworkCacheMode")->set(Value("cache-only")));
   EXPECT_EQ(services_.fetcher()->options().cache.mode, CacheMode::CacheOnly);
+  EXPECT_TRUE(isGdalOffline());
   const MapServers::Offer offer = offered("http://127.0.0.1:" + std::to_string(freePort()) + "/capabilities.xml");
   ASSERT_FALSE(offer);
   EXPECT_THAT(offer.error().message(), testing::Not(HasSubstr("connect")));
+  EXPECT_TRUE(owner_.property("NetworkCacheMode")->set(Value("read-write")));
+  EXPECT_FALSE(isGdalOffline());
 }
 
 }  // namespace
