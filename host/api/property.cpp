@@ -127,6 +127,9 @@ Result<void> StringProperty::assign(const Value& value) {
   if (value.string() == nullptr) {
     return wrongType(*this, "a string", value);
   }
+  if (std::string remedy = check_ ? check_(*value.string()) : std::string(); !remedy.empty()) {
+    return failure("the text cannot be taken", uri(), std::move(remedy));
+  }
   put(*value.string());
   return {};
 }

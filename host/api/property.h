@@ -129,8 +129,11 @@ class IntProperty final : public Property {
 
 class StringProperty final : public Property {
  public:
-  StringProperty(Description description, std::string value = {})
-      : Property(std::move(description)), value_(std::move(value)) {}
+  /// Of a value that is set: what to give in its place ("give a line of ASCII"), or an empty text when it is good.
+  using Check = std::function<std::string(const std::string&)>;
+
+  StringProperty(Description description, std::string value = {}, Check check = {})
+      : Property(std::move(description)), value_(std::move(value)), check_(std::move(check)) {}
   [[nodiscard]] const std::string& get() const { return value_; }
   void put(std::string value);
   [[nodiscard]] Value value() const override { return value_; }
@@ -139,6 +142,7 @@ class StringProperty final : public Property {
  private:
   Result<void> assign(const Value& value) override;
   std::string value_;
+  Check check_;
 };
 
 /// A glm vector of 2, 3 or 4 doubles; its Value is a list of numbers.

@@ -1,7 +1,8 @@
 #include "globebrowsing/globe_services.h"
 
-#include <algorithm>
+#include <utility>
 
+#include "globebrowsing/source/gdal_network.h"
 #include "globebrowsing/source/tile_decoder.h"
 
 namespace meridian::globebrowsing {
@@ -9,7 +10,6 @@ namespace meridian::globebrowsing {
 namespace {
 
 constexpr std::size_t mebibyte = std::size_t{1} << 20;
-constexpr int mostCacheMebibytes = 1 << 24;
 /// Of the tile cache's size: what services' own tiles may take besides.
 constexpr std::size_t sourceTileShare = 4;
 
@@ -19,32 +19,28 @@ NetworkOptions networkOptions(const std::filesystem::path& cacheFolder) {
   return withEnvironment(std::move(options));
 }
 
-int mebibytes(std::uint64_t bytes) {
-  return static_cast<int>(std::min<std::uint64_t>(bytes / mebibyte, mostCacheMebibytes));
-}
-
 }  // namespace
 
 GlobeServices::GlobeServices(PropertyOwner& owner, Statistics& statistics, const std::filesystem::path& cacheFolder)
     : GlobeServices(owner, statistics, networkOptions(cacheFolder)) {}
 
 GlobeServices::GlobeServices(PropertyOwner& owner, Statistics& statistics, const NetworkOptions& network)
-    : networkCacheMode({"NetworkCacheMode", "Network cache", "What is done with the cache of the network on disk"},
-                       {"read-write", "cache-only", "read-only", "off"}, static_cast<int>(network.cache.mode)),
-      networkCacheSize({"NetworkCacheSize", "Network cache size", "On disk, in MiB; 0 keeps nothing"},
-                       mebibytes(network.cache.maximumBytes), 0, mostCacheMebibytes),
-      statistics_(statistics),
+    : statistics_(statistics),
       fetcher_(std::make_shared<OnDemandFetcher>(network)),
+      imageLimits_(std::make_shared<std::atomic<ImageLimits>>(network.images)),
       sourceTiles_(std::make_shared<SourceTileStore>(
           SourceTileStore::Parts{fetcher_,
                                  [this](std::function<void()> work) {
                                    workers_.post([work = std::move(work)](const std::stop_token&) { work(); });
                                  },
-                                 decodeTile})),
+                                 [limits = imageLimits_](const TileService& service, std::size_t matrix, PixelKind kind,
+                                                         const Fetched& fetched) {
+                                   return decodeTileWithin(*limits, service, matrix, kind, fetched);
+                                 }})),
       capabilities_(workers_, fetcher_),
-      streamer_(workers_, statistics) {
-  for (Property* property : std::initializer_list<Property*>{&tileCacheSize, &texturePoolSize, &compositionBudget,
-                                                             &networkCacheMode, &networkCacheSize}) {
+      streamer_(workers_, statistics),
+      network_(owner, network, [this](const NetworkOptions& options) { setNetwork(options); }) {
+  for (Property* property : std::initializer_list<Property*>{&tileCacheSize, &texturePoolSize, &compositionBudget}) {
     owner.addProperty(*property);
   }
   const auto setBudget = [this] {
@@ -54,9 +50,13 @@ GlobeServices::GlobeServices(PropertyOwner& owner, Statistics& statistics, const
   };
   setBudget();
   tileCacheSize.onChange(setBudget);
-  networkCacheMode.onChange([this] { fetcher_->setCacheMode(static_cast<CacheMode>(networkCacheMode.get())); });
-  networkCacheSize.onChange(
-      [this] { fetcher_->setCacheSize(static_cast<std::uint64_t>(networkCacheSize.get()) * mebibyte); });
+  setGdalNetwork(network);
+}
+
+void GlobeServices::setNetwork(const NetworkOptions& options) {
+  fetcher_->setOptions(options);
+  *imageLimits_ = options.images;
+  setGdalNetwork(options);
 }
 
 GlobeServices::~GlobeServices() {

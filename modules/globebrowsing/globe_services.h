@@ -1,11 +1,13 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <utility>
 
 #include "globebrowsing/capabilities_loader.h"
+#include "globebrowsing/network/network_properties.h"
 #include "globebrowsing/network/on_demand_fetcher.h"
 #include "globebrowsing/providers/path_tokens.h"
 #include "globebrowsing/source/source_tile_store.h"
@@ -22,8 +24,8 @@ namespace meridian::globebrowsing {
 /// module's properties. Render thread only.
 class GlobeServices {
  public:
-  /// Adds the budgets to `owner`; it and the statistics outlive the services. What comes from the network is kept below
-  /// `cacheFolder`; empty: nowhere.
+  /// Adds the budgets and the network's settings to `owner`; it and the statistics outlive the services. What comes
+  /// from the network is kept below `cacheFolder`; empty: nowhere.
   GlobeServices(PropertyOwner& owner, Statistics& statistics, const std::filesystem::path& cacheFolder);
   GlobeServices(const GlobeServices&) = delete;
   GlobeServices& operator=(const GlobeServices&) = delete;
@@ -57,22 +59,23 @@ class GlobeServices {
       512,
       64,
       65536};
-  OptionProperty networkCacheMode;  ///< in the order of CacheMode
-  IntProperty networkCacheSize;
   FloatProperty compositionBudget{
       {"CompositionBudget", "Composition budget", "Of blending layers in a frame, in milliseconds"}, 2.0, {0.1, 100.0}};
 
  private:
   GlobeServices(PropertyOwner& owner, Statistics& statistics, const NetworkOptions& network);
+  void setNetwork(const NetworkOptions& options);
 
   Statistics& statistics_;
   WorkerPool workers_;
   std::shared_ptr<OnDemandFetcher> fetcher_;
+  std::shared_ptr<std::atomic<ImageLimits>> imageLimits_;  ///< for workers that decode
   std::shared_ptr<SourceTileStore> sourceTiles_;
   CapabilitiesLoader capabilities_;
   TileStreamer streamer_;
   TexturePoolShares poolShares_;
   TokenFolder tokenFolder_;
+  NetworkProperties network_;
   std::uint64_t frame_ = ~std::uint64_t{0};
 };
 

@@ -22,6 +22,9 @@ class CircuitBreaker {
 
   explicit CircuitBreaker(const RetryOptions& options) : options_(options) {}
 
+  /// A pause that has begun stays as long as it is.
+  void setOptions(const RetryOptions& options) { options_ = options; }
+
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] TimePoint pauseEnd() const { return std::max(pauseEnd_, notBefore_); }
   [[nodiscard]] bool mayProbe(TimePoint now) const { return state_ != State::Up && now >= pauseEnd(); }

@@ -15,9 +15,10 @@ namespace meridian::globebrowsing {
 /// What to fetch, and how little of it is still an answer.
 struct FetchRequest {
   std::string url;
-  std::vector<std::string> headers{};                ///< further ones, "Name: value"
-  double priority = 0.0;                             ///< a greater one is served first
-  std::size_t maximumBytes = std::size_t{32} << 20;  ///< after decoding of the content encoding
+  std::vector<std::string> headers{};  ///< further ones, "Name: value"
+  double priority = 0.0;               ///< a greater one is served first
+  /// Of the body after decoding of its content encoding. Default: TransferLimits::bodyBytes.
+  std::optional<std::size_t> maximumBytes{};
   /// Statuses that say "nothing here": not an error, and remembered for a while. 204 always is one.
   std::vector<int> emptyStatuses{404};
   /// While its server is down it waits, as a tile should; otherwise that is an error, for what somebody sits and waits

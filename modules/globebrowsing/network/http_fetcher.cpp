@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <ctime>
+#include <mutex>
 #include <random>
 #include <string>
 #include <thread>
@@ -31,8 +32,8 @@ class HttpFetcher::Engine {
   std::unique_ptr<PendingFetch> fetch(FetchRequest request, Done done);
   void accept(const Fetched& answer);
   void reject(const FetchRequest& request);
-  void setCacheMode(CacheMode mode);
-  void setCacheSize(std::uint64_t bytes);
+  void setOptions(const NetworkOptions& options);
+  [[nodiscard]] NetworkOptions options() const;
   void drainCache() { cache_.drain(); }
   [[nodiscard]] const NetworkStatistics& statistics() const { return statistics_; }
 
@@ -42,6 +43,7 @@ class HttpFetcher::Engine {
   using Clock = std::chrono::steady_clock;
 
   void run();
+  void apply(const NetworkOptions& options);
   void begin(FetchRequest request, const std::shared_ptr<Waiter>& waiter);
   void renew(const std::shared_ptr<Waiter>& waiter);
   void cancel(const std::shared_ptr<Waiter>& waiter);
@@ -61,9 +63,12 @@ class HttpFetcher::Engine {
   void updateGauges();
   [[nodiscard]] bool mayServeStale(const Flight& flight) const;
 
+  mutable std::mutex optionsMutex_;  ///< for changing options_, and for reading it elsewhere than on the network thread
   NetworkOptions options_;
   NetworkStatistics statistics_;
+  const bool hasCache_;
   std::atomic<CacheMode> cacheMode_;
+  std::atomic<std::uint64_t> cacheBytes_;
   std::atomic<bool> stopping_{false};
   HttpTransfers transfers_;
   std::shared_ptr<Mailbox> mailbox_;
@@ -107,7 +112,9 @@ class HttpFetcher::Engine::Handle final : public PendingFetch {
 
 HttpFetcher::Engine::Engine(NetworkOptions options)
     : options_(std::move(options)),
+      hasCache_(!options_.cache.folder.empty()),
       cacheMode_(options_.cache.mode),
+      cacheBytes_(options_.cache.maximumBytes),
       transfers_(options_, statistics_),
       mailbox_(std::make_shared<Mailbox>([this] { transfers_.wake(); })),
       cache_(options_.cache, statistics_),
@@ -138,9 +145,8 @@ std::unique_ptr<PendingFetch> HttpFetcher::Engine::fetch(FetchRequest request, D
 }
 
 void HttpFetcher::Engine::accept(const Fetched& answer) {
-  if (answer.origin == nullptr || answer.body == nullptr || options_.cache.folder.empty() ||
-      cacheMode_ != CacheMode::ReadWrite || !isStorable(answer.origin->status, answer.origin->facts.fields) ||
-      answer.origin->isAccepted.exchange(true)) {
+  if (answer.origin == nullptr || answer.body == nullptr || !hasCache_ || cacheMode_ != CacheMode::ReadWrite ||
+      !isStorable(answer.origin->status, answer.origin->facts.fields) || answer.origin->isAccepted.exchange(true)) {
     return;
   }
   cache_.store(answer.origin->key, {answer.origin->facts, answer.body});
@@ -158,13 +164,30 @@ void HttpFetcher::Engine::reject(const FetchRequest& request) {
   mailbox_->post([this, key = std::move(key)] { negatives_.add(key, nothingHere, Clock::now()); });
 }
 
-void HttpFetcher::Engine::setCacheMode(CacheMode mode) {
-  cacheMode_ = mode;
-  cache_.setMode(mode);
+void HttpFetcher::Engine::setOptions(const NetworkOptions& options) {
+  const CacheOptions& cache = options.cache;
+  if (cacheMode_.exchange(cache.mode) != cache.mode) {
+    cache_.setMode(cache.mode);
+  }
+  if (cacheBytes_.exchange(cache.maximumBytes) != cache.maximumBytes) {
+    cache_.setMaximumBytes(cache.maximumBytes);
+  }
+  mailbox_->post([this, options] { apply(options); });
 }
 
-void HttpFetcher::Engine::setCacheSize(std::uint64_t bytes) {
-  cache_.setMaximumBytes(bytes);
+NetworkOptions HttpFetcher::Engine::options() const {
+  const std::lock_guard lock(optionsMutex_);
+  return options_;
+}
+
+void HttpFetcher::Engine::apply(const NetworkOptions& options) {
+  {
+    const std::lock_guard lock(optionsMutex_);
+    setRunningOptions(options_, options);
+  }
+  queue_.setOptions(options_.concurrency, options_.retry);
+  negatives_.setLimits(options_.cache.negativeLifetime, options_.cache.maximumNegatives);
+  transfers_.optionsChanged();
 }
 
 void HttpFetcher::Engine::run() {
@@ -203,6 +226,7 @@ void HttpFetcher::Engine::begin(FetchRequest request, const std::shared_ptr<Wait
     waiter->delivery.deliver(tl::make_unexpected(std::move(address.error())));
     return;
   }
+  request.maximumBytes = request.maximumBytes.value_or(options_.limits.bodyBytes);
   std::string key = cacheKey(*address, request);
   if (const auto status = negatives_.find(key, Clock::now()); status && isEmptyStatus(request, *status)) {
     ++statistics_.negativeHits;
@@ -254,7 +278,7 @@ void HttpFetcher::Engine::cancel(const std::shared_ptr<Waiter>& waiter) {
 }
 
 void HttpFetcher::Engine::lookUp(Id id, Flight& flight) {
-  if (cacheMode_ == CacheMode::Off || options_.cache.folder.empty()) {
+  if (cacheMode_ == CacheMode::Off || !hasCache_) {
     found(id, std::nullopt);
     return;
   }
@@ -269,7 +293,7 @@ void HttpFetcher::Engine::found(Id id, std::optional<CachedAnswer> kept) {
     return;  // cancelled meanwhile
   }
   Flight& flight = place->second;
-  if (kept && kept->body->size() > flight.request.maximumBytes) {
+  if (kept && kept->body->size() > *flight.request.maximumBytes) {
     kept.reset();
   }
   const bool isGood = kept && isFresh(kept->facts, options_.cache.rules, std::time(nullptr));
@@ -279,8 +303,10 @@ void HttpFetcher::Engine::found(Id id, std::optional<CachedAnswer> kept) {
     return;
   }
   if (cacheMode_ == CacheMode::CacheOnly) {
-    finish(id, failure("it is not in the cache, and no server is asked in the cache mode cache-only",
-                       flight.request.url, "go online: unset MERIDIAN_OFFLINE and MERIDIAN_CACHE_MODE"));
+    finish(id,
+           failure("it is not in the cache, and no server is asked in the cache mode cache-only", flight.request.url,
+                   "go online: unset MERIDIAN_OFFLINE and MERIDIAN_CACHE_MODE, or set the property NetworkCacheMode to "
+                   "read-write"));
     return;
   }
   flight.kept = std::move(kept);
@@ -308,7 +334,7 @@ void HttpFetcher::Engine::startTransfers() {
     if (++flight.attempts > 1) {
       ++statistics_.retries;
     }
-    TransferRequest transfer{flight.address, flight.request.headers, flight.request.maximumBytes};
+    TransferRequest transfer{flight.address, flight.request.headers, *flight.request.maximumBytes};
     if (flight.kept) {
       for (std::string& header : conditionalHeaders(flight.kept->facts)) {
         transfer.headers.push_back(std::move(header));
@@ -468,12 +494,12 @@ void HttpFetcher::reject(const FetchRequest& request) {
   engine_->reject(request);
 }
 
-void HttpFetcher::setCacheMode(CacheMode mode) {
-  engine_->setCacheMode(mode);
+void HttpFetcher::setOptions(const NetworkOptions& options) {
+  engine_->setOptions(options);
 }
 
-void HttpFetcher::setCacheSize(std::uint64_t maximumBytes) {
-  engine_->setCacheSize(maximumBytes);
+NetworkOptions HttpFetcher::options() const {
+  return engine_->options();
 }
 
 void HttpFetcher::drainCache() {

@@ -25,9 +25,11 @@ class HttpFetcher final : public Fetcher {
   void accept(const FetchRequest& request, const Fetched& answer) override;
   void reject(const FetchRequest& request) override;
 
-  // From any thread; requests made afterwards heed them.
-  void setCacheMode(CacheMode mode);
-  void setCacheSize(std::uint64_t maximumBytes);
+  /// Requests made afterwards heed them; what is under way goes on as it began. The cache stays in its folder, and the
+  /// certificates are those of the beginning. From any thread.
+  void setOptions(const NetworkOptions& options);
+  /// What it goes by: those set last as soon as its thread has seen them. From any thread.
+  [[nodiscard]] NetworkOptions options() const;
 
   /// Waits until everything that was accepted is on disk.
   void drainCache();

@@ -27,7 +27,8 @@ std::string cacheKey(const WebAddress& address, const FetchRequest& request) {
 }
 
 std::string identityOf(const std::string& key, const FetchRequest& request) {
-  std::string identity = key + '\n' + std::to_string(request.maximumBytes) + (request.isPatient ? "" : " !");
+  std::string identity = key + '\n' + (request.maximumBytes ? std::to_string(*request.maximumBytes) : "-") +
+                         (request.isPatient ? "" : " !");
   for (const int status : request.emptyStatuses) {
     identity += ' ' + std::to_string(status);
   }

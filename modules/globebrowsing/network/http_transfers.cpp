@@ -35,10 +35,15 @@ struct HttpTransfers::Multi {
   std::vector<CURL*> idle;
 
   ~Multi() {
+    dropIdle();
+    curl_multi_cleanup(handle);
+  }
+
+  void dropIdle() {
     for (CURL* easy : idle) {
       curl_easy_cleanup(easy);
     }
-    curl_multi_cleanup(handle);
+    idle.clear();
   }
 
   /// Null when there is none.
@@ -55,7 +60,8 @@ struct HttpTransfers::Multi {
 struct HttpTransfers::Transfer {
   std::uint64_t id = 0;
   TransferRequest request{};
-  const TransferLimits* limits = nullptr;
+  unsigned generation = 0;
+  std::size_t maximumHeaderBytes = 0;
   CURL* easy = nullptr;
   std::unique_ptr<curl_slist, FreeList> headers{};
   std::array<char, CURL_ERROR_SIZE> detail{};
@@ -79,7 +85,7 @@ int HttpTransfers::Transfer::status() const {
 
 bool HttpTransfers::Transfer::takeHeader(std::string_view line) {
   headerBytes += line.size();
-  if (headerBytes > limits->headerBytes) {
+  if (headerBytes > maximumHeaderBytes) {
     hasTooMuchHeader = true;
     return false;
   }
@@ -165,12 +171,21 @@ bool isFieldLine(const std::string& header) {
 }  // namespace
 
 HttpTransfers::HttpTransfers(const NetworkOptions& options, NetworkStatistics& statistics)
-    : options_(&options),
-      statistics_(&statistics),
-      userAgent_(options.userAgent.empty() ? "Meridian/" MERIDIAN_VERSION : options.userAgent) {
+    : options_(&options), statistics_(&statistics), userAgent_(userAgentOf(options)) {
   initialiseCurl();
   multi_ = std::make_unique<Multi>();
-  const ConcurrencyOptions& concurrency = options.concurrency;
+  setConnections();
+}
+
+void HttpTransfers::optionsChanged() {
+  ++generation_;
+  userAgent_ = userAgentOf(*options_);
+  multi_->dropIdle();
+  setConnections();
+}
+
+void HttpTransfers::setConnections() {
+  const ConcurrencyOptions& concurrency = options_->concurrency;
   curl_multi_setopt(multi_->handle, CURLMOPT_PIPELINING, static_cast<long>(CURLPIPE_MULTIPLEX));
   curl_multi_setopt(multi_->handle, CURLMOPT_MAXCONNECTS, static_cast<long>(std::max(concurrency.total, 1)));
   curl_multi_setopt(multi_->handle, CURLMOPT_MAX_HOST_CONNECTIONS, static_cast<long>(std::max(concurrency.perHost, 1)));
@@ -187,7 +202,8 @@ void HttpTransfers::start(std::uint64_t id, TransferRequest request) {
   Transfer& transfer = *owned;
   transfer.id = id;
   transfer.request = std::move(request);
-  transfer.limits = &options_->limits;
+  transfer.generation = generation_;
+  transfer.maximumHeaderBytes = options_->limits.headerBytes;
   transfer.facts.requestTime = std::time(nullptr);
   const auto refuse = [&](Error error) { early_.push_back({.id = id, .failure = {Outcome::Final, std::move(error)}}); };
   for (const std::string& header : transfer.request.headers) {
@@ -237,7 +253,11 @@ void HttpTransfers::cancel(std::uint64_t id) {
   // Whatever it still points to is set anew before it is used again, but for these.
   curl_easy_setopt(easy, CURLOPT_HTTPHEADER, nullptr);
   curl_easy_setopt(easy, CURLOPT_ERRORBUFFER, nullptr);
-  multi_->idle.push_back(easy);
+  if (place->second->generation == generation_) {
+    multi_->idle.push_back(easy);
+  } else {
+    curl_easy_cleanup(easy);
+  }
   transfers_.erase(place);
 }
 
@@ -288,7 +308,7 @@ TransferEnding HttpTransfers::endingOf(Transfer& transfer, int code) const {
   }
   if (transfer.hasTooMuchHeader) {
     ending.failure.error = {
-        "the answer's headers are larger than " + std::to_string(transfer.limits->headerBytes) + " bytes", url,
+        "the answer's headers are larger than " + std::to_string(transfer.maximumHeaderBytes) + " bytes", url,
         "tell those who run the server"};
     return ending;
   }

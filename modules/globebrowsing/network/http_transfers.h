@@ -47,6 +47,8 @@ class HttpTransfers {
   /// Breaks off what is under way.
   ~HttpTransfers();
 
+  /// The options have changed: what is started from now on heeds them, what is under way goes on as it began.
+  void optionsChanged();
   void start(std::uint64_t id, TransferRequest request);
   /// Its ending is not told.
   void cancel(std::uint64_t id);
@@ -61,11 +63,13 @@ class HttpTransfers {
   struct Transfer;
 
   void perform(std::vector<TransferEnding>& endings);
+  void setConnections();
   [[nodiscard]] TransferEnding endingOf(Transfer& transfer, int code) const;
 
   const NetworkOptions* options_;
   NetworkStatistics* statistics_;
   std::string userAgent_;
+  unsigned generation_ = 0;  ///< of the options: handles of an older one are not used again
   std::unique_ptr<Multi> multi_;
   std::unordered_map<std::uint64_t, std::unique_ptr<Transfer>> transfers_;
   std::vector<TransferEnding> early_;  ///< ended before they began

@@ -2,6 +2,16 @@
 
 namespace meridian::globebrowsing {
 
+void NegativeCache::setLimits(std::chrono::milliseconds lifetime, std::size_t maximumEntries) {
+  if (lifetime == lifetime_ && maximumEntries == maximumEntries_) {
+    return;
+  }
+  lifetime_ = lifetime;
+  maximumEntries_ = maximumEntries;
+  places_.clear();
+  entries_.clear();
+}
+
 void NegativeCache::add(const std::string& key, int status, TimePoint now) {
   if (lifetime_.count() <= 0 || maximumEntries_ == 0) {
     return;

@@ -18,6 +18,8 @@ class NegativeCache {
   NegativeCache(std::chrono::milliseconds lifetime, std::size_t maximumEntries)
       : lifetime_(lifetime), maximumEntries_(maximumEntries) {}
 
+  /// Forgets everything if one of them is another than before.
+  void setLimits(std::chrono::milliseconds lifetime, std::size_t maximumEntries);
   void add(const std::string& key, int status, TimePoint now);
   /// The status that said so, while that still counts.
   [[nodiscard]] std::optional<int> find(const std::string& key, TimePoint now);

@@ -48,13 +48,22 @@ struct TransferLimits {
   long minimumSpeed = 64;
   long redirects = 5;                               ///< 0: none is followed
   std::size_t headerBytes = std::size_t{64} << 10;  ///< of all headers of one answer; 0: none may be sent
+  /// Of a body after decoding of its content encoding, where a FetchRequest says nothing else.
+  std::size_t bodyBytes = std::size_t{32} << 20;
 };
 
-/// How the network behaves. The defaults are what a globe wants; docs/network.md tells the environment's names.
+/// What the image of a tile may announce; one that announces more is not decoded.
+struct ImageLimits {
+  std::int32_t side = 8192;                     ///< pixels, at least 1
+  std::int32_t pixels = std::int32_t{1} << 24;  ///< width times height
+};
+
+/// How the network behaves. The defaults are what a globe wants; network_settings.h tells what users can set of it.
 struct NetworkOptions {
   ConcurrencyOptions concurrency{};
   RetryOptions retry{};
   TransferLimits limits{};
+  ImageLimits images{};
   CacheOptions cache{};
   /// A file of certificates (PEM) to trust in place of the system's. Empty: the system's.
   std::filesystem::path certificateFile{};
@@ -62,7 +71,11 @@ struct NetworkOptions {
   std::string userAgent{};
 };
 
-/// `options` with what the environment says in place. What it says wrongly is logged and left out.
-[[nodiscard]] NetworkOptions withEnvironment(NetworkOptions options);
+/// Gives `running` all of `options` that may change while the network runs: all but the cache's folder and the
+/// certificates.
+void setRunningOptions(NetworkOptions& running, const NetworkOptions& options);
+
+/// Of these, or where they say nothing ours: Meridian/VERSION.
+[[nodiscard]] std::string userAgentOf(const NetworkOptions& options);
 
 }  // namespace meridian::globebrowsing

@@ -40,20 +40,17 @@ void OnDemandFetcher::reject(const FetchRequest& request) {
   ifStarted([&](HttpFetcher& fetcher) { fetcher.reject(request); });
 }
 
-void OnDemandFetcher::setCacheMode(CacheMode mode) {
+void OnDemandFetcher::setOptions(const NetworkOptions& options) {
   const std::lock_guard lock(mutex_);
-  options_.cache.mode = mode;
+  setRunningOptions(options_, options);
   if (fetcher_ != nullptr) {
-    fetcher_->setCacheMode(mode);
+    fetcher_->setOptions(options);
   }
 }
 
-void OnDemandFetcher::setCacheSize(std::uint64_t maximumBytes) {
-  const std::lock_guard lock(mutex_);
-  options_.cache.maximumBytes = maximumBytes;
-  if (fetcher_ != nullptr) {
-    fetcher_->setCacheSize(maximumBytes);
-  }
+NetworkOptions OnDemandFetcher::options() const {
+  const std::shared_lock lock(mutex_);
+  return fetcher_ != nullptr ? fetcher_->options() : options_;
 }
 
 bool OnDemandFetcher::hasStarted() const {

@@ -20,9 +20,9 @@ class OnDemandFetcher final : public Fetcher {
   void accept(const FetchRequest& request, const Fetched& answer) override;
   void reject(const FetchRequest& request) override;
 
-  // From any thread; requests made afterwards heed them.
-  void setCacheMode(CacheMode mode);
-  void setCacheSize(std::uint64_t maximumBytes);
+  /// As HttpFetcher's.
+  void setOptions(const NetworkOptions& options);
+  [[nodiscard]] NetworkOptions options() const;
 
   [[nodiscard]] bool hasStarted() const;
   /// Cancels everything; what is asked for afterwards stays unanswered. Not from within a `done`.

@@ -5,6 +5,14 @@
 
 namespace meridian::globebrowsing {
 
+void RequestQueue::setOptions(const ConcurrencyOptions& concurrency, const RetryOptions& retry) {
+  concurrency_ = concurrency;
+  retry_ = retry;
+  for (auto& [name, host] : hosts_) {
+    host.breaker.setOptions(retry);
+  }
+}
+
 void RequestQueue::add(Id id, const std::string& host, double priority, bool isPatient) {
   Host& server = hosts_.try_emplace(host, retry_).first->second;
   const bool isNew = requests_.emplace(id, Request{&server, priority, isPatient, server.answers}).second;

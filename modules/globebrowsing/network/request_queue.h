@@ -45,6 +45,8 @@ class RequestQueue {
   RequestQueue(const ConcurrencyOptions& concurrency, const RetryOptions& retry, Random random)
       : concurrency_(concurrency), retry_(retry), random_(std::move(random)) {}
 
+  /// For all hosts, from the next decision on; a wait that has begun stays as long as it is.
+  void setOptions(const ConcurrencyOptions& concurrency, const RetryOptions& retry);
   /// `host` is whatever shares limits and fate: scheme, name and port. One that is not patient is over when its host
   /// turns out to be down.
   void add(Id id, const std::string& host, double priority, bool isPatient = true);

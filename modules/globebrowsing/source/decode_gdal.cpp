@@ -48,11 +48,11 @@ class MemoryDataset {
   MemoryDataset& operator=(const MemoryDataset&) = delete;
 
   /// Of a sane size, with real numbers.
-  [[nodiscard]] Result<GDALDataset*> checked() const {
+  [[nodiscard]] Result<GDALDataset*> checked(const ImageLimits& limits) const {
     if (!dataset_ || dataset_->GetRasterCount() < 1) {
       return messages_.failure("the image cannot be read", where_);
     }
-    if (auto good = checkTileSize(dataset_->GetRasterXSize(), dataset_->GetRasterYSize(), where_); !good) {
+    if (auto good = checkTileSize(dataset_->GetRasterXSize(), dataset_->GetRasterYSize(), where_, limits); !good) {
       return tl::make_unexpected(std::move(good.error()));
     }
     for (int i = 1; i <= std::min(dataset_->GetRasterCount(), 4); ++i) {
@@ -92,10 +92,11 @@ void applyPalette(const GDALColorTable& palette, DecodedImage& image) {
 
 }  // namespace
 
-Result<DecodedImage> decodeByGdal(std::span<const std::uint8_t> bytes, const std::string& where) {
+Result<DecodedImage> decodeByGdal(std::span<const std::uint8_t> bytes, const std::string& where,
+                                  const ImageLimits& limits) {
   const GdalMessages messages;
   const MemoryDataset memory(bytes, messages, where);
-  auto dataset = memory.checked();
+  auto dataset = memory.checked(limits);
   if (!dataset) {
     return tl::make_unexpected(std::move(dataset.error()));
   }
@@ -132,10 +133,11 @@ Result<DecodedImage> decodeByGdal(std::span<const std::uint8_t> bytes, const std
   return image;
 }
 
-Result<DecodedValues> valuesByGdal(std::span<const std::uint8_t> bytes, const std::string& where) {
+Result<DecodedValues> valuesByGdal(std::span<const std::uint8_t> bytes, const std::string& where,
+                                   const ImageLimits& limits) {
   const GdalMessages messages;
   const MemoryDataset memory(bytes, messages, where);
-  auto dataset = memory.checked();
+  auto dataset = memory.checked(limits);
   if (!dataset) {
     return tl::make_unexpected(std::move(dataset.error()));
   }

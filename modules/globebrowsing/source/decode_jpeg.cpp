@@ -90,7 +90,8 @@ bool readPixels(Decompression& state, std::uint8_t* rgba) {
 
 }  // namespace
 
-Result<DecodedImage> decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& where) {
+Result<DecodedImage> decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& where,
+                                const ImageLimits& limits) {
   thread_local Decompression state;
   prepare(state);
   DecodedImage image;
@@ -103,13 +104,13 @@ Result<DecodedImage> decodeJpeg(std::span<const std::uint8_t> bytes, const std::
   }
   const auto width = static_cast<std::int64_t>(state.info.image_width);
   const auto height = static_cast<std::int64_t>(state.info.image_height);
-  if (auto good = checkTileSize(width, height, where); !good) {
+  if (auto good = checkTileSize(width, height, where, limits); !good) {
     jpeg_abort_decompress(&state.info);
     return tl::make_unexpected(std::move(good.error()));
   }
   if (state.info.num_components == 4) {  // inks: rare, and GDAL knows their variants
     jpeg_abort_decompress(&state.info);
-    return decodeByGdal(bytes, where);
+    return decodeByGdal(bytes, where, limits);
   }
   image.tile.width = static_cast<int>(width);
   image.tile.height = static_cast<int>(height);

@@ -23,7 +23,7 @@ struct Blob {
   std::vector<std::uint8_t> isThere{};  ///< of a pixel, the same for all bands
 };
 
-Result<Blob> decode(std::span<const std::uint8_t> bytes, const std::string& where) {
+Result<Blob> decode(std::span<const std::uint8_t> bytes, const std::string& where, const ImageLimits& limits) {
   // version, type, depth, columns, rows, bands, valid pixels, blob size, masks
   std::array<unsigned int, 9> info{};
   std::array<double, 3> range{};
@@ -31,7 +31,7 @@ Result<Blob> decode(std::span<const std::uint8_t> bytes, const std::string& wher
   if (lerc_getBlobInfo(bytes.data(), size, info.data(), range.data(), info.size(), range.size()) != 0) {
     return failure("the LERC blob is damaged", where);
   }
-  if (auto good = checkTileSize(info[3], info[4], where); !good) {
+  if (auto good = checkTileSize(info[3], info[4], where, limits); !good) {
     return tl::make_unexpected(std::move(good.error()));
   }
   const std::uint64_t pixels = std::uint64_t{info[3]} * info[4];
@@ -56,9 +56,9 @@ Result<Blob> decode(std::span<const std::uint8_t> bytes, const std::string& wher
 }
 
 /// The library throws nothing by its interface, and lets its allocations fail through it.
-Result<Blob> decodeSafely(std::span<const std::uint8_t> bytes, const std::string& where) {
+Result<Blob> decodeSafely(std::span<const std::uint8_t> bytes, const std::string& where, const ImageLimits& limits) {
   try {
-    return decode(bytes, where);
+    return decode(bytes, where, limits);
   } catch (const std::exception& exception) {
     return failure(std::string("the LERC blob cannot be decoded (") + exception.what() + ")", where);
   }
@@ -66,8 +66,9 @@ Result<Blob> decodeSafely(std::span<const std::uint8_t> bytes, const std::string
 
 }  // namespace
 
-Result<DecodedValues> valuesOfLerc(std::span<const std::uint8_t> bytes, const std::string& where) {
-  auto blob = decodeSafely(bytes, where);
+Result<DecodedValues> valuesOfLerc(std::span<const std::uint8_t> bytes, const std::string& where,
+                                   const ImageLimits& limits) {
+  auto blob = decodeSafely(bytes, where, limits);
   if (!blob) {
     return tl::make_unexpected(std::move(blob.error()));
   }
@@ -80,8 +81,9 @@ Result<DecodedValues> valuesOfLerc(std::span<const std::uint8_t> bytes, const st
   return result;
 }
 
-Result<DecodedImage> decodeLerc(std::span<const std::uint8_t> bytes, const std::string& where) {
-  auto blob = decodeSafely(bytes, where);
+Result<DecodedImage> decodeLerc(std::span<const std::uint8_t> bytes, const std::string& where,
+                                const ImageLimits& limits) {
+  auto blob = decodeSafely(bytes, where, limits);
   if (!blob) {
     return tl::make_unexpected(std::move(blob.error()));
   }

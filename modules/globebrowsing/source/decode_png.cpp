@@ -63,7 +63,8 @@ bool readPixels(png_structp png, png_bytepp rows) {
 
 }  // namespace
 
-Result<DecodedImage> decodePng(std::span<const std::uint8_t> bytes, const std::string& where) {
+Result<DecodedImage> decodePng(std::span<const std::uint8_t> bytes, const std::string& where,
+                               const ImageLimits& limits) {
   Input input{bytes};
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &input, leave, ignore);
   png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
@@ -82,7 +83,7 @@ Result<DecodedImage> decodePng(std::span<const std::uint8_t> bytes, const std::s
   }
   const png_uint_32 width = png_get_image_width(png, info);
   const png_uint_32 height = png_get_image_height(png, info);
-  if (auto good = checkTileSize(width, height, where); !good) {
+  if (auto good = checkTileSize(width, height, where, limits); !good) {
     png_destroy_read_struct(&png, &info, nullptr);
     return tl::make_unexpected(std::move(good.error()));
   }

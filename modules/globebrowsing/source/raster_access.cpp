@@ -104,8 +104,10 @@ struct RasterAccess::Store {
   std::atomic<std::size_t> bytes{0};
 };
 
-RasterAccess::RasterAccess(RasterDescription description, GDALDataset* dataset, RasterGeoreference georeference)
+RasterAccess::RasterAccess(RasterDescription description, GdalReach reach, GDALDataset* dataset,
+                           RasterGeoreference georeference)
     : description_(std::move(description)),
+      reach_(std::move(reach)),
       pyramid_{description_.where.empty() ? description_.path : description_.where, std::move(georeference)},
       pool_(std::make_shared<Pool>()) {
   pool_->idle.push_back(std::make_unique<RasterHandle>(dataset, pyramid_.georeference.projection()));
@@ -151,6 +153,9 @@ Result<void> RasterAccess::prepareColours(GDALDataset& dataset) const {
   if (hasColourRule_) {
     return {};
   }
+  if (auto allowed = checkReach(reach_, pyramid_.where); !allowed) {
+    return allowed;
+  }
   auto rule = colourRule(dataset, pyramid_.where);
   if (!rule) {
     return tl::make_unexpected(rule.error());
@@ -170,6 +175,9 @@ Result<std::shared_ptr<RasterHandle>> RasterAccess::borrow() const {
     }
   }
   if (!handle) {
+    if (auto allowed = checkReach(reach_, pyramid_.where); !allowed) {
+      return tl::make_unexpected(allowed.error());
+    }
     const GdalMessages messages;
     GDALDataset* dataset = GDALDataset::Open(description_.path.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR);
     if (dataset == nullptr) {
@@ -203,6 +211,9 @@ bool RasterAccess::isKept(std::size_t level, std::size_t pixelBytes) const {
 template <class Pixel>
 Result<void> RasterAccess::readStrips(RasterHandle& handle, const RasterLevel& level, const PixelWindow& window,
                                       Pixel* out, std::ptrdiff_t stride, const std::stop_token& stop) const {
+  if (auto allowed = checkReach(reach_, pyramid_.where); !allowed) {
+    return allowed;
+  }
   GDALRasterBand* band = handle.dataset().GetRasterBand(1);
   GDALRasterBand* native = level.overview < 0 ? band : band->GetOverview(level.overview);
   if (native == nullptr) {
@@ -280,7 +291,7 @@ Result<const Pixel*> RasterAccess::resident(RasterHandle& handle, std::size_t le
       reduce(finer + static_cast<std::ptrdiff_t>(from) * f.width, f.width, std::min(rows * 2, f.height - from), 2,
              target);
     } else if (auto done = readStrips(handle, l, {0, kept.rows, l.width, rows}, target, l.width, stop); !done) {
-      if (!stop.stop_requested()) {
+      if (!stop.stop_requested() && checkReach(reach_, pyramid_.where)) {  // being offline may end
         kept.error = done.error();
       }
       return tl::make_unexpected(done.error());

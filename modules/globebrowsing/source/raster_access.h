@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "globebrowsing/source/gdal_network.h"
 #include "globebrowsing/source/pyramid.h"
 #include "globebrowsing/source/raster_levels.h"
 
@@ -32,7 +33,7 @@ class RasterHandle {
 class RasterAccess {
  public:
   /// `dataset` is open and becomes the first of the pool.
-  RasterAccess(RasterDescription description, GDALDataset* dataset, RasterGeoreference georeference);
+  RasterAccess(RasterDescription description, GdalReach reach, GDALDataset* dataset, RasterGeoreference georeference);
   [[nodiscard]] Result<void> examine();  ///< fills info; call once, before anything else
   ~RasterAccess();
 
@@ -76,6 +77,7 @@ class RasterAccess {
   Result<const Pixel*> resident(RasterHandle& handle, std::size_t level, const std::stop_token& stop) const;
 
   RasterDescription description_;
+  GdalReach reach_;
   Pyramid pyramid_;
   RasterInfo info_;
   std::vector<RasterLevel> levels_;  ///< of the pyramid's, where they come from

@@ -4,6 +4,7 @@
 
 #include <gdal_priv.h>
 
+#include "globebrowsing/source/gdal_network.h"
 #include "globebrowsing/source/gdal_runtime.h"
 #include "globebrowsing/source/raster_access.h"
 #include "globebrowsing/source/resample_parts.h"
@@ -69,6 +70,10 @@ Result<std::shared_ptr<RasterSource>> RasterSource::open(const RasterDescription
     return tl::make_unexpected(named.error());
   }
   const GdalMessages messages;
+  const GdalReach reach = gdalReach(description.path);
+  if (auto allowed = checkReach(reach, where); !allowed) {
+    return tl::make_unexpected(allowed.error());
+  }
   GDALDatasetUniquePtr dataset(GDALDataset::Open(description.path.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
   if (!dataset) {
     return cannotOpen(messages, description.path, where);
@@ -80,7 +85,7 @@ Result<std::shared_ptr<RasterSource>> RasterSource::open(const RasterDescription
   if (!georeference) {
     return tl::make_unexpected(georeference.error());
   }
-  auto access = std::make_unique<RasterAccess>(description, dataset.release(), std::move(*georeference));
+  auto access = std::make_unique<RasterAccess>(description, reach, dataset.release(), std::move(*georeference));
   if (auto examined = access->examine(); !examined) {
     return tl::make_unexpected(examined.error());
   }

@@ -78,8 +78,8 @@ struct RasterInfo {
 class RasterSource final : public PixelSource {
  public:
   /// Opens and examines; may read from disk or network, so call it on a worker. Errors: no such file, a directory, not
-  /// a raster, no bands, complex samples, a size beyond 2^31 - 1 pixels of memory, a CRS that PROJ rejects, an
-  /// invertible geotransform missing, an extent outside the globe.
+  /// a raster, a server that is not to be asked (gdal_network.h), no bands, complex samples, a size beyond 2^31 - 1
+  /// pixels of memory, a CRS that PROJ rejects, an invertible geotransform missing, an extent outside the globe.
   [[nodiscard]] static Result<std::shared_ptr<RasterSource>> open(const RasterDescription& description);
   ~RasterSource() override;
   RasterSource(const RasterSource&) = delete;

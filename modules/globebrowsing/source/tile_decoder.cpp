@@ -18,6 +18,9 @@ namespace meridian::globebrowsing {
 
 namespace {
 
+// What is set of the one may not be beyond what is built for.
+static_assert(ImageLimits{}.side == longestTileSide && ImageLimits{}.pixels == mostTilePixels);
+
 constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
 
 bool startsWith(std::span<const std::uint8_t> bytes, std::string_view begin, std::size_t at = 0) {
@@ -43,16 +46,17 @@ Result<Tile> withoutImage(std::span<const std::uint8_t> bytes, const TileService
                  service.where);
 }
 
-Result<DecodedImage> decodeImage(std::span<const std::uint8_t> bytes, TileFormat format, const std::string& where) {
+Result<DecodedImage> decodeImage(std::span<const std::uint8_t> bytes, TileFormat format, const std::string& where,
+                                 const ImageLimits& limits) {
   switch (format) {
     case TileFormat::Jpeg:
-      return decodeJpeg(bytes, where);
+      return decodeJpeg(bytes, where, limits);
     case TileFormat::Png:
-      return decodePng(bytes, where);
+      return decodePng(bytes, where, limits);
     case TileFormat::Lerc:
-      return decodeLerc(bytes, where);
+      return decodeLerc(bytes, where, limits);
     default:
-      return decodeByGdal(bytes, where);
+      return decodeByGdal(bytes, where, limits);
   }
 }
 
@@ -146,18 +150,19 @@ float unpacked(const std::uint8_t* rgba, TileEncoding encoding) {
 }
 
 /// Values of band 1; eight bits come from our own, faster readers.
-Result<DecodedValues> decodeValues(std::span<const std::uint8_t> bytes, TileFormat format, const std::string& where) {
+Result<DecodedValues> decodeValues(std::span<const std::uint8_t> bytes, TileFormat format, const std::string& where,
+                                   const ImageLimits& limits) {
   constexpr std::size_t bitDepthOfPng = 24;
   constexpr std::size_t colourTypeOfPng = 25;
   if (format == TileFormat::Lerc) {
-    return valuesOfLerc(bytes, where);
+    return valuesOfLerc(bytes, where, limits);
   }
   const bool isPlain = format == TileFormat::Jpeg || (format == TileFormat::Png && bytes.size() > colourTypeOfPng &&
                                                       bytes[bitDepthOfPng] == 8 && bytes[colourTypeOfPng] != 3);
   if (!isPlain) {
-    return valuesByGdal(bytes, where);
+    return valuesByGdal(bytes, where, limits);
   }
-  auto image = decodeImage(bytes, format, where);
+  auto image = decodeImage(bytes, format, where, limits);
   if (!image) {
     return tl::make_unexpected(std::move(image.error()));
   }
@@ -170,8 +175,8 @@ Result<DecodedValues> decodeValues(std::span<const std::uint8_t> bytes, TileForm
 }
 
 Result<DecodedHeights> heightsOfValues(std::span<const std::uint8_t> bytes, TileFormat format,
-                                       const TileService& service) {
-  auto values = decodeValues(bytes, format, service.where);
+                                       const TileService& service, const ImageLimits& limits) {
+  auto values = decodeValues(bytes, format, service.where, limits);
   if (!values) {
     return tl::make_unexpected(std::move(values.error()));
   }
@@ -186,8 +191,8 @@ Result<DecodedHeights> heightsOfValues(std::span<const std::uint8_t> bytes, Tile
 }
 
 Result<DecodedHeights> heightsOfPacked(std::span<const std::uint8_t> bytes, TileFormat format,
-                                       const TileService& service) {
-  auto image = decodeImage(bytes, format, service.where);
+                                       const TileService& service, const ImageLimits& limits) {
+  auto image = decodeImage(bytes, format, service.where, limits);
   if (!image) {
     return tl::make_unexpected(std::move(image.error()));
   }
@@ -231,21 +236,22 @@ TileFormat formatOf(std::span<const std::uint8_t> bytes) {
   return startsWith(bytes, "BM"sv) ? TileFormat::Bmp : TileFormat::Unknown;
 }
 
-Result<void> checkTileSize(std::int64_t width, std::int64_t height, const std::string& where) {
-  if (width < 1 || height < 1 || width > longestTileSide || height > longestTileSide ||
-      width * height > mostTilePixels) {
-    return failure(fmt::format("the tile announces {} x {} pixels, more than are decoded", width, height), where);
+Result<void> checkTileSize(std::int64_t width, std::int64_t height, const std::string& where,
+                           const ImageLimits& limits) {
+  if (width < 1 || height < 1 || width > limits.side || height > limits.side || width * height > limits.pixels) {
+    return failure(fmt::format("the tile announces {} x {} pixels, more than are decoded", width, height), where,
+                   "ask for smaller tiles, or raise MERIDIAN_IMAGE_SIDE or MERIDIAN_IMAGE_PIXELS");
   }
   return {};
 }
 
 Result<DecodedColours> decodeColours(std::span<const std::uint8_t> bytes, const TileService& service,
-                                     std::size_t matrix) {
+                                     std::size_t matrix, const ImageLimits& limits) {
   const TileFormat format = formatOf(bytes);
   if (format == TileFormat::Unknown) {
     return withoutImage<DecodedColours>(bytes, service);
   }
-  auto image = decodeImage(bytes, format, service.where);
+  auto image = decodeImage(bytes, format, service.where, limits);
   if (!image) {
     return tl::make_unexpected(std::move(image.error()));
   }
@@ -260,13 +266,13 @@ Result<DecodedColours> decodeColours(std::span<const std::uint8_t> bytes, const 
 }
 
 Result<DecodedHeights> decodeHeights(std::span<const std::uint8_t> bytes, const TileService& service,
-                                     std::size_t matrix) {
+                                     std::size_t matrix, const ImageLimits& limits) {
   const TileFormat format = formatOf(bytes);
   if (format == TileFormat::Unknown) {
     return withoutImage<DecodedHeights>(bytes, service);
   }
-  auto tile = service.encoding == TileEncoding::Image ? heightsOfValues(bytes, format, service)
-                                                      : heightsOfPacked(bytes, format, service);
+  auto tile = service.encoding == TileEncoding::Image ? heightsOfValues(bytes, format, service, limits)
+                                                      : heightsOfPacked(bytes, format, service, limits);
   if (!tile) {
     return tile;
   }
@@ -281,6 +287,11 @@ Result<DecodedHeights> decodeHeights(std::span<const std::uint8_t> bytes, const 
 
 Result<SourceTilePointer> decodeTile(const TileService& service, std::size_t matrix, PixelKind kind,
                                      const Fetched& fetched) {
+  return decodeTileWithin({}, service, matrix, kind, fetched);
+}
+
+Result<SourceTilePointer> decodeTileWithin(const ImageLimits& limits, const TileService& service, std::size_t matrix,
+                                           PixelKind kind, const Fetched& fetched) {
   const auto published = [](auto& decoded, auto&& pixels) -> SourceTilePointer {
     if (decoded.isEmpty()) {
       return nullptr;
@@ -292,11 +303,11 @@ Result<SourceTilePointer> decodeTile(const TileService& service, std::size_t mat
     return tile;
   };
   if (kind == PixelKind::Heights) {
-    return decodeHeights(*fetched.body, service, matrix).map([&](DecodedHeights decoded) {
+    return decodeHeights(*fetched.body, service, matrix, limits).map([&](DecodedHeights decoded) {
       return published(decoded, [&](SourceTile& tile) { tile.heights = std::move(decoded.metres); });
     });
   }
-  return decodeColours(*fetched.body, service, matrix).map([&](DecodedColours decoded) {
+  return decodeColours(*fetched.body, service, matrix, limits).map([&](DecodedColours decoded) {
     return published(decoded, [&](SourceTile& tile) { tile.rgba = std::move(decoded.rgba); });
   });
 }

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "globebrowsing/network/network_options.h"
 #include "globebrowsing/source/source_tile.h"
 #include "globebrowsing/source/tile_service.h"
 #include "host/api/error.h"
@@ -29,7 +30,7 @@ struct DecodedHeights {
   [[nodiscard]] bool isEmpty() const { return metres.empty(); }
 };
 
-/// Sides and pixels that a tile may have; what announces more is not decoded.
+/// Of a tile's sides whatever ImageLimits say, and what these say by default.
 inline constexpr int longestTileSide = 8192;
 inline constexpr std::int64_t mostTilePixels = std::int64_t{1} << 24;
 
@@ -43,18 +44,20 @@ inline constexpr std::int64_t mostTilePixels = std::int64_t{1} << 24;
 ///
 /// Empty where the service answers with an exception (OGC XML, ArcGIS JSON, a page in HTML) and isExceptionEmpty says
 /// what that means. Errors: an exception otherwise, quoted; a format that is not read; damaged or truncated data; a
-/// size other than the matrix's; beyond the limits above. No input crashes it. Safe from any thread.
+/// size other than the matrix's; beyond the limits. No input crashes it. Safe from any thread.
 [[nodiscard]] Result<DecodedColours> decodeColours(std::span<const std::uint8_t> bytes, const TileService& service,
-                                                   std::size_t matrix);
+                                                   std::size_t matrix, const ImageLimits& limits = {});
 
 /// Likewise heights, by service.encoding. Of an Image: band 1 times heightScale plus heightOffset (default: what the
 /// raster says itself, else 1 and 0), not-a-number where noData, the raster's own or its mask say so. Of the packed
 /// ones: not-a-number where alpha is 0 (PackedFloat: where the float is one, or beyond 1e6 metres).
 [[nodiscard]] Result<DecodedHeights> decodeHeights(std::span<const std::uint8_t> bytes, const TileService& service,
-                                                   std::size_t matrix);
+                                                   std::size_t matrix, const ImageLimits& limits = {});
 
 /// Either of them, for a SourceTileStore: a TileDecoder.
 [[nodiscard]] Result<SourceTilePointer> decodeTile(const TileService& service, std::size_t matrix, PixelKind kind,
                                                    const Fetched& fetched);
+[[nodiscard]] Result<SourceTilePointer> decodeTileWithin(const ImageLimits& limits, const TileService& service,
+                                                         std::size_t matrix, PixelKind kind, const Fetched& fetched);
 
 }  // namespace meridian::globebrowsing

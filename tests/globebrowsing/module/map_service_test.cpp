@@ -5,6 +5,7 @@
 
 #include "globe_fixture.h"
 #include "globebrowsing/globe_services.h"
+#include "globebrowsing/source/gdal_network.h"
 #include "support/nginx_server.h"
 #include "support/server_process.h"
 #include "support/timed_pyramid.h"
@@ -90,6 +91,19 @@ TEST_F(MapServiceTest, AddressesOfTilesAndArcGisCachesShowTheSame) {
   EXPECT_LE(difference(pictureOf(server.http1() + "/arcgis/rest/services/World/MapServer?f=json"), expected), 3);
   EXPECT_THAT(server.accessLog(), HasSubstr(" 200 /arcgis/rest/services/World/MapServer/tile/2/"));
   EXPECT_THAT(server.accessLog(), testing::Not(HasSubstr(" 404 /arcgis"))) << "it has no more than it says";
+}
+
+TEST_F(MapServiceTest, APropertyLimitsTheImagesOfTiles) {
+  WorldRaster::cut(folder_ / "world.tif", folder_ / "tiles");
+  const int port = freePort();
+  const ServerProcess server(ServerProcess::fileServer((folder_ / "tiles").string(), port), port);
+  setModuleProperty("NetworkImageSide", 64.0);
+  auto& globe =
+      addGlobe({{"ColorLayers",
+                 listOf({fileLayer("World", WorldRaster::document("http://127.0.0.1:" + std::to_string(port)))})}});
+  const StringProperty& lastError = globe.layers().group(LayerGroupId::ColorLayers).find("World")->lastError;
+  ASSERT_TRUE(framesUntil([&lastError] { return !lastError.get().empty(); }));
+  EXPECT_THAT(lastError.get(), HasSubstr("MERIDIAN_IMAGE_SIDE"));
 }
 
 TEST_F(MapServiceTest, TheViewWaitsForAServerThatIsDown) {
@@ -214,11 +228,14 @@ TEST_F(CapabilitiesLoaderTest, SaysWhyThereAreNone) {
 }
 
 TEST_F(CapabilitiesLoaderTest, TheCacheOfTheNetworkIsSetByProperties) {
-  EXPECT_TRUE(services_.networkCacheMode.set(Value("cache-only")));
-  EXPECT_EQ(services_.networkCacheMode.word(), "cache-only");
+  EXPECT_TRUE(owner_.property("NetworkCacheMode")->set(Value("cache-only")));
+  EXPECT_EQ(services_.fetcher()->options().cache.mode, CacheMode::CacheOnly);
+  EXPECT_TRUE(isGdalOffline());
   const MapServers::Offer offer = offered("http://127.0.0.1:" + std::to_string(freePort()) + "/capabilities.xml");
   ASSERT_FALSE(offer);
   EXPECT_THAT(offer.error().message(), testing::Not(HasSubstr("connect")));
+  EXPECT_TRUE(owner_.property("NetworkCacheMode")->set(Value("read-write")));
+  EXPECT_FALSE(isGdalOffline());
 }
 
 }  // namespace

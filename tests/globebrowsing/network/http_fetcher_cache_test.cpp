@@ -171,7 +171,8 @@ TEST_F(HttpFetcherCache, CacheOnlyAsksNobody) {
   EXPECT_EQ(server.count(), 1U);
 
   server.on("/b", {.body = "b"});
-  fetcher.setCacheMode(CacheMode::ReadWrite);
+  options.cache.mode = CacheMode::ReadWrite;
+  fetcher.setOptions(options);
   EXPECT_EQ(textOf(*askFor(fetcher, server.url("/b"))), "b");
 }
 

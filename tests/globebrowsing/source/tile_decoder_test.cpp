@@ -397,6 +397,28 @@ void decodeBothWays(const Bytes& bytes, const TileService& service) {
               high->metres.size() == static_cast<std::size_t>(high->width) * static_cast<std::size_t>(high->height));
 }
 
+TEST(TileDecoder, DecodesNoMoreThanItsLimitsAllow) {
+  std::size_t refused = 0;
+  for (const auto& [bytes, service] : samples()) {
+    const TileMatrix& matrix = service.matrices.front();
+    const int side = std::max(matrix.tileWidth, matrix.tileHeight);
+    const auto whole = decodeColours(bytes, service, 0);
+    if (!whole || whole->isEmpty()) {  // heights only, or what a service says in place of an image
+      continue;
+    }
+    const std::int32_t pixels = matrix.tileWidth * matrix.tileHeight;
+    EXPECT_TRUE(decodeColours(bytes, service, 0, {side, pixels}));
+    for (const ImageLimits& limits : {ImageLimits{side - 1, pixels}, ImageLimits{side, pixels - 1}}) {
+      const auto tile = decodeColours(bytes, service, 0, limits);
+      ASSERT_FALSE(tile);
+      EXPECT_NE(tile.error().message().find("more than are decoded"), std::string::npos) << tile.error().message();
+      EXPECT_FALSE(decodeHeights(bytes, service, 0, limits));
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 8U);
+}
+
 TEST(TileDecoder, SurvivesTruncation) {
   for (const auto& [bytes, service] : samples()) {
     for (std::size_t step = 0; step < 40; ++step) {
