@@ -238,13 +238,11 @@ void CompositeStore::compose(double milliseconds) {
   }
   for (const CompositeKind kind : allCompositeKinds) {
     CompositeGenerations& generations = this->generations(kind);
-    std::vector<CompositeGathering::Drawn>& drawn = of(kind).drawn;
     if (generations.hasNext() && (generations.isCrowded() || nextCovers(kind))) {
-      generations.endNext(!drawn.empty() || missing_ == 0);
+      generations.endNext(!of(kind).drawn.empty() || missing_ == 0);
     }
-    of(kind).wasDrawn = !drawn.empty();
-    drawn.clear();
   }
+  isDrawnOld_ = true;
 }
 
 void CompositeStore::noteFull(const CompositeKey& key) {
@@ -287,9 +285,19 @@ CompositeStore::Composed CompositeStore::composeOne(const CompositeGathering::Qu
   return Composed::Done;
 }
 
+void CompositeStore::beginDrawing() {
+  if (isDrawnOld_) {
+    isDrawnOld_ = false;
+    for (Kind& kind : kinds_) {
+      kind.drawn.clear();
+    }
+  }
+}
+
 std::optional<CompositeStore::Placement> CompositeStore::place(CompositeKind kind, const TileIndex& index,
                                                                int colourLevel) {
   const CompositeGenerations& generations = this->generations(kind);
+  beginDrawing();
   if (generations.hasSteps()) {
     of(kind).drawn.push_back({index, colourLevel});
   }
@@ -326,6 +334,7 @@ std::optional<CompositeStore::Placement> CompositeStore::placeAt(const Composite
 std::string CompositeStore::waitingFor() const {
   for (const CompositeKind kind : allCompositeKinds) {
     const CompositeGenerations& generations = this->generations(kind);
+    const bool isDrawn = !of(kind).drawn.empty();  // a surface that is still filled is not
     if (generations.isOutdated(kind, layers_)) {
       return "layers have changed";
     }
@@ -334,12 +343,11 @@ std::string CompositeStore::waitingFor() const {
       if (layer.awaitsData()) {
         return fmt::format("{} is being opened", layer.uri());
       }
-      if (of(kind).wasDrawn && !generations.pair().isHeld && layer.step() != generations.shown().steps[i]) {
+      if (isDrawn && !generations.pair().isHeld && layer.step() != generations.shown().steps[i]) {
         return fmt::format("{} shows another time", layer.uri());
       }
     }
-    if (of(kind).wasDrawn && generations.interpolated() != nullptr && !generations.pair().isMixed &&
-        kindBetweenSteps() == kind) {
+    if (isDrawn && generations.interpolated() != nullptr && !generations.pair().isMixed && kindBetweenSteps() == kind) {
       return fmt::format("{} shows one of two times", generations.interpolated()->uri());
     }
     if (inUse(kind) && composer_->programs().isOwnPending(kind)) {

@@ -1,8 +1,10 @@
 #include <fstream>
+#include <regex>
 
 #include <gmock/gmock.h>
 
 #include "globe_fixture.h"
+#include "globebrowsing/surface/chunked_surface.h"
 
 namespace meridian::globebrowsing {
 namespace {
@@ -179,6 +181,40 @@ TEST_F(TimeStepsTest, GoesOnWithoutRoomForTwoTimes) {
     const std::vector<int> now = seen();
     EXPECT_NE(now.front(), 0);
   }));
+  EXPECT_EQ(seen(), std::vector<int>{2});
+}
+
+// As a film does it: each frame is drawn once, waited for without drawing, and drawn again.
+TEST_F(TimeStepsTest, SettlesInFramesThatAreNotDrawn) {
+  time_ = dayOf(1);
+  look(0.1, 0.2, 9e6);
+  addGlobe({{"ColorLayers", listOf({monthly("M", 2048, {}, 4)})}});
+  ASSERT_TRUE(settle());
+  for (const int month : {2, 3, 4, 1}) {
+    time_ = dayOf(month);
+    frame();
+    ASSERT_TRUE(framesUntil([&] { return unsettled().empty(); }, false)) << unsettled();
+    frame();
+    EXPECT_EQ(unsettled(), "");
+    EXPECT_EQ(seen(), std::vector<int>{month});
+  }
+}
+
+TEST_F(TimeStepsTest, TheNextTimeIsFilledInFramesThatAreNotDrawn) {
+  time_ = dayOf(1);
+  look(0.1, 0.2, 9e6);
+  RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({monthly("M", 2048, {}, 2)})}});
+  ASSERT_TRUE(settle());
+  const CompositeStore& store = dynamic_cast<ChunkedSurface&>(*globe.surface()).tiles().composites();
+  const std::uint64_t composed = store.composedCount();
+  time_ = dayOf(2);
+  frame();
+  // Exchanged for nothing, it would be seen in whichever frame is drawn next.
+  const auto isShown = [&] { return !std::regex_search(unsettled(), std::regex("another time|being opened")); };
+  ASSERT_FALSE(isShown()) << unsettled();
+  ASSERT_TRUE(framesUntil(isShown, false));
+  EXPECT_GT(store.composedCount(), composed);
+  frame();
   EXPECT_EQ(seen(), std::vector<int>{2});
 }
 
