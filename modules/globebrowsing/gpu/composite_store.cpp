@@ -50,7 +50,9 @@ void CompositeStore::beginFrame(std::uint64_t frame) {
   updateMixing();
   for (const CompositeKind kind : allCompositeKinds) {
     // Where nothing is drawn the last step is finished first as well, or a surface that is still filled never would be.
-    generations(kind).follow(interpolates_ && fading_ == kind, !of(kind).drawn.empty() || !lackedSome_);
+    // One that was never drawn keeps it: whoever waits for it to be filled takes it at any time.
+    const bool mayBegin = !of(kind).drawn.empty() || !lackedSome_;
+    generations(kind).follow(interpolates_ && fading_ == kind, {mayBegin, mayBegin && wasDrawn_});
   }
 }
 
@@ -189,6 +191,9 @@ bool CompositeStore::nextCovers(CompositeKind kind) const {
     return stateOf(nextKey(kind, tile.index, tile.colourLevel)).present;
   };
   const std::vector<CompositeGathering::Drawn>& drawn = of(kind).drawn;
+  if (!wasDrawn_ && !generations(kind).pair().isHeld) {
+    return generations(kind).pair().isMixed;  // no other has been wanted as a whole
+  }
   for (int root = 0; root < tiling_->rootCount(); ++root) {
     if ((!drawn.empty() || generations(kind).pair().isHeld) &&
         !isPresent({{static_cast<std::uint8_t>(root), 0, 0, 0}})) {
@@ -286,6 +291,7 @@ CompositeStore::Composed CompositeStore::composeOne(const CompositeGathering::Qu
 }
 
 void CompositeStore::beginDrawing() {
+  wasDrawn_ = true;
   if (isDrawnOld_) {
     isDrawnOld_ = false;
     for (Kind& kind : kinds_) {

@@ -176,6 +176,7 @@ class CompositeStore {
   bool interpolates_ = false;  ///< `fading_` is mixed because it is between two steps in time
   std::optional<CompositeKind> mixing_;
   bool isDrawnOld_ = true;  ///< what kinds have in `drawn` is of an earlier frame
+  bool wasDrawn_ = false;   ///< ever: a surface that is filled in place of another is not
   bool drewMixed_ = false;  ///< since the last beginFrame()
   bool mixedLast_ = false;  ///< in the last frame
   std::uint64_t composedCount_ = 0;

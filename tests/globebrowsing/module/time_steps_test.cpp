@@ -218,6 +218,26 @@ TEST_F(TimeStepsTest, TheNextTimeIsFilledInFramesThatAreNotDrawn) {
   EXPECT_EQ(seen(), std::vector<int>{2});
 }
 
+TEST_F(TimeStepsTest, AnotherPoolIsFilledBeforeItIsDrawnWhileTimeGoesOn) {
+  setModuleProperty("CompositionBudget", 0.1);
+  time_ = dayOf(1, 1);
+  RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({monthly("M")})}});
+  ASSERT_TRUE(settle());
+  for (const int size : {128, 256, 512}) {
+    setModuleProperty("TexturePoolSize", size);
+    const Surface* before = globe.surface();
+    int after = 0;
+    ASSERT_TRUE(framesUntil([&] {
+      time_ = time_ + (time_ > dayOf(11) ? -300.0 : 10.0) * 86400.0;
+      const std::vector<int> now = seen();
+      EXPECT_EQ(now.size(), 1U) << "two times at once, or none";
+      EXPECT_NE(now.front(), 0);
+      after += globe.surface() != before ? 1 : 0;
+      return testing::Test::HasFailure() || after > 10;
+    }));
+  }
+}
+
 TEST_F(TimeStepsTest, ASequenceFollowsItsIndex) {
   static_cast<void>(monthly("M", 256));
   const Value sequence =
