@@ -45,6 +45,7 @@ void CompositeStore::beginFrame(std::uint64_t frame) {
   composer_->beginFrame(frame);
   gathering_.beginFrame();
   for (const CompositeKind kind : allCompositeKinds) {
+    of(kind).isExchanged = false;
     updateKind(kind);
   }
   updateMixing();
@@ -244,7 +245,10 @@ void CompositeStore::compose(double milliseconds) {
   for (const CompositeKind kind : allCompositeKinds) {
     CompositeGenerations& generations = this->generations(kind);
     if (generations.hasNext() && (generations.isCrowded() || nextCovers(kind))) {
+      const std::uint64_t shown = generations.shown().stamp;
+      const bool wasMixed = generations.pair().isMixed;
       generations.endNext(!of(kind).drawn.empty() || missing_ == 0);
+      of(kind).isExchanged = generations.shown().stamp != shown || generations.pair().isMixed != wasMixed;
     }
   }
   isDrawnOld_ = true;
@@ -343,6 +347,9 @@ std::string CompositeStore::waitingFor() const {
     const bool isDrawn = !of(kind).drawn.empty();  // a surface that is still filled is not
     if (generations.isOutdated(kind, layers_)) {
       return "layers have changed";
+    }
+    if (of(kind).isExchanged) {
+      return "layers show another time since this frame";
     }
     for (std::size_t i = 0; i < generations.layers().size(); ++i) {
       const Layer& layer = *generations.layers()[i];

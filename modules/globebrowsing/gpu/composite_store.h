@@ -117,6 +117,7 @@ class CompositeStore {
     FadeWatch fade;
     bool noRoomToFade = false;  ///< the pool has none for second composites, as long as this fade goes on
     std::vector<CompositeGathering::Drawn> drawn;  ///< in the last frame that was drawn, where the kind has steps
+    bool isExchanged = false;  ///< what was wanted in this frame is of steps that are not drawn any more, or not alone
   };
 
   [[nodiscard]] Kind& of(CompositeKind kind) { return kinds_[static_cast<std::size_t>(kind)]; }

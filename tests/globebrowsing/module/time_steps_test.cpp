@@ -182,6 +182,7 @@ TEST_F(TimeStepsTest, GoesOnWithoutRoomForTwoTimes) {
     EXPECT_NE(now.front(), 0);
   }));
   EXPECT_EQ(seen(), std::vector<int>{2});
+  EXPECT_EQ(unsettled(), "") << "what was complete stays so";
 }
 
 // As a film does it: each frame is drawn once, waited for without drawing, and drawn again.
@@ -216,6 +217,18 @@ TEST_F(TimeStepsTest, TheNextTimeIsFilledInFramesThatAreNotDrawn) {
   EXPECT_GT(store.composedCount(), composed);
   frame();
   EXPECT_EQ(seen(), std::vector<int>{2});
+}
+
+TEST_F(TimeStepsTest, AFinerTimeIsNotCompleteInTheFrameThatShowsIt) {
+  time_ = dayOf(1);
+  look(0.1, 0.2, 9e6);
+  const Value layer = monthly("M", 64, {}, 2);
+  uniformRaster("M/m2004-02.tif", colourOf(2), 4096);
+  addGlobe({{"ColorLayers", listOf({layer})}});
+  ASSERT_TRUE(settle());
+  time_ = dayOf(2);
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(unsettled(), "") << "what was complete stays so";
 }
 
 TEST_F(TimeStepsTest, AnotherPoolIsFilledBeforeItIsDrawnWhileTimeGoesOn) {
