@@ -70,5 +70,79 @@ TEST_F(SettlingTest, ALayerThatWasOpenedAfterTheLastUpdateIsStillBeingOpened) {
   EXPECT_NEAR(globe.heightAt(0.1, 0.2), 1000.0, 1e-3);
 }
 
+/// Two globes side by side, one of them near.
+class SharesTest : public SettlingTest {
+ protected:
+  void SetUp() override {
+    SettlingTest::SetUp();
+    if (graphics_) {
+      earth_ = &addGlobe({{"ColorLayers", listOf({solidLayer("Red", {1, 0, 0})})}}, {}, "Earth");
+      moon_ = &addGlobe({{"ColorLayers", listOf({solidLayer("Grey", {0.5, 0.5, 0.5})})}}, {}, "Moon");
+    }
+  }
+  void update(RenderableGlobe& globe, double distance) {
+    look(0.1, 0.2, distance);
+    const std::array<View, 1> views{view_};
+    globe.update({time_, 0.0, 0.0, number_, views});
+  }
+  void frameOf(double earthDistance, double moonDistance) {
+    ++number_;
+    graphics_->beginFrame();
+    update(*earth_, earthDistance);
+    update(*moon_, moonDistance);
+    graphics_->endFrame();
+    statistics_.endFrame();
+  }
+  [[nodiscard]] bool areSettled() const { return earth_->settled(0).complete && moon_->settled(0).complete; }
+  [[nodiscard]] bool framesOfUntil(double earthDistance, double moonDistance, const std::function<bool()>& holds) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(90);
+    do {
+      frameOf(earthDistance, moonDistance);
+      if (holds()) {
+        return true;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    } while (std::chrono::steady_clock::now() < end);
+    return false;
+  }
+  /// And stay so.
+  void expectSettled(double earthDistance, double moonDistance) {
+    ASSERT_TRUE(framesOfUntil(earthDistance, moonDistance, [&] { return areSettled(); }))
+        << earth_->settled(0).reason << moon_->settled(0).reason;
+    for (int n = 0; n < 5; ++n) {
+      frameOf(earthDistance, moonDistance);
+      EXPECT_EQ(earth_->settled(0).reason, "");
+      EXPECT_EQ(moon_->settled(0).reason, "");
+    }
+    EXPECT_FALSE(services_->poolShares().isWaitedFor(earth_));
+    EXPECT_FALSE(services_->poolShares().isWaitedFor(moon_));
+  }
+
+  static constexpr double near = 1e7;
+  static constexpr double middle = 1.5e7;
+  static constexpr double far = 2.4e7;
+  RenderableGlobe* earth_ = nullptr;
+  RenderableGlobe* moon_ = nullptr;
+};
+
+TEST_F(SharesTest, AGlobeThatIsToHaveTheLargeShareIsNotSettledBeforeItHasIt) {
+  expectSettled(near, middle);
+  frameOf(far, middle);  // nothing that the moon wants has changed
+  EXPECT_EQ(moon_->settled(0).reason, "the globe moves to textures of another size");
+  expectSettled(far, middle);
+}
+
+TEST_F(SharesTest, AShareThatIsNotNeededAfterAllIsGivenBack) {
+  expectSettled(near, middle);
+  ASSERT_TRUE(framesOfUntil(far, middle, [&] { return services_->poolShares().isWaitedFor(earth_); }));
+  ASSERT_TRUE(framesOfUntil(far, middle, [&] { return !services_->poolShares().isWaitedFor(earth_); }));
+  closeGates();
+  frameOf(far, middle);  // the moon takes the share, and cannot fill its textures
+  frameOf(near, middle);
+  frameOf(near, middle);
+  openGates();
+  expectSettled(near, middle);
+}
+
 }  // namespace
 }  // namespace meridian::globebrowsing
