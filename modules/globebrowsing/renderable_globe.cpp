@@ -204,6 +204,7 @@ void RenderableGlobe::updateSurfaces(const FrameContext& frame, TexturePoolShare
     hold();
   } else if (wanted == pool_) {
     replacement_.reset();
+    hold();  // or the share taken for it would be kept from the others
   } else if (!replacement_ || wanted != replacementPool_) {
     replacement_ = makeSurface(wanted);
     replacementPool_ = wanted;
@@ -258,6 +259,9 @@ void RenderableGlobe::update(const FrameContext& frame) {
     const std::optional<TexturePoolShares::Share> share = services_.poolShares().bid(this, radius);
     if (share && surfaceError_.empty()) {
       updateSurfaces(frame, *share);
+    }
+    if (!surfaceError_.empty()) {
+      services_.poolShares().release(this);
     }
   } else if (surface_ && (++framesUnseen_ > framesUntilRelease || services_.poolShares().isWaitedFor(this))) {
     dropSurfaces();
@@ -368,7 +372,7 @@ Settled RenderableGlobe::settled(std::size_t view) const {
   if (!surface_) {
     return {false, "the globe has not been prepared yet"};
   }
-  if (replacement_) {
+  if (replacement_ || services_.poolShares().waits(this)) {
     return {false, "the globe moves to textures of another size"};
   }
   return surface_->settled(view);

@@ -49,6 +49,9 @@ class TexturePoolShares {
       holder_ = nullptr;
     }
   }
+  /// After the bids of a frame: whether that globe is to have the large share and does not hold it yet. The holder lets
+  /// go once it has filled smaller textures, without waiting for servers, or at once when it is not drawn.
+  [[nodiscard]] bool waits(const void* globe) const { return globe == candidate_ && globe != holder_; }
   /// Whether another globe waits for the share that this one holds.
   [[nodiscard]] bool isWaitedFor(const void* globe) const {
     return holder_ == globe && largest_ != nullptr && largest_ != globe;

@@ -89,6 +89,7 @@ class ChunkTree::Implementation {
   void split(NodeNumber number);
   void draw(NodeNumber number, const Demand& demand);
   void want(const ChunkNode& node, double priority);
+  void renewShape(const ChunkNode& node, double priority);
   [[nodiscard]] TileResidency::State stateOf(const ChunkNode& node) const {
     return residency_->state(node.index, node.colourLevel);
   }
@@ -194,15 +195,24 @@ void ChunkTree::Implementation::want(const ChunkNode& node, double priority) {
   }
 }
 
+void ChunkTree::Implementation::renewShape(const ChunkNode& node, double priority) {
+  if (node.index.level > 0) {
+    residency_->renewShape(node.index, priority);
+  }
+}
+
 void ChunkTree::Implementation::noteCulled(const ChunkNode& node, const Demand& demand) {
   if (!demand.beside) {
     ++figures_.culledHorizon;
+    renewShape(node, 0.0);
     return;
   }
   ++figures_.culledFrustum;
   // Beside what is drawn: without it, turning the camera would fall back to a coarser chunk.
   if (settings_.prefetch) {
     want(node, priority(demand, 0.0));
+  } else {
+    renewShape(node, 0.0);
   }
   keep(node);
 }
@@ -257,6 +267,7 @@ bool ChunkTree::Implementation::visitChildren(NodeNumber number, const Demand& d
   }
   const ChunkNode& node = pool_[number];
   keep(node);
+  renewShape(node, priority(demand, 0.0));
   if (covered) {
     return true;
   }

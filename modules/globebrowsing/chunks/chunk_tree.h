@@ -30,7 +30,8 @@ namespace meridian::globebrowsing {
 /// covered exactly once, as long as the roots can be drawn.
 ///
 /// What all views cull, by frustum or horizon, is neither drawn nor descended into. What only the frustum culls is
-/// kept, and with settings.prefetch also wanted, after everything needed now.
+/// kept, and with settings.prefetch also wanted, after everything needed now. Tiles that are culled or split by heights
+/// of before have their shapes made anew, after everything needed now as well.
 ///
 /// A steady selection (nothing new is visited) allocates nothing. Nodes that are not visited for a while are reclaimed.
 /// One thread at a time.

@@ -144,7 +144,7 @@ void CompositeGenerations::setSteps(Generation& generation, bool other) {
   ++changes_;
 }
 
-void CompositeGenerations::follow(bool mixes, bool mayBegin) {
+void CompositeGenerations::follow(bool mixes, const Leave& mayBegin) {
   if (hasSteps_ || hasNext_) {
     const bool isBetween = mixes && interpolated_;
     if (isBetween && pair_.isPair) {
@@ -171,7 +171,7 @@ void CompositeGenerations::keepPair() {
   }
 }
 
-void CompositeGenerations::beginNext(bool isBetween, bool mayBegin) {
+void CompositeGenerations::beginNext(bool isBetween, const Leave& mayBegin) {
   // Of two steps that are to be mixed, the one that is not drawn yet.
   const bool toOther = isBetween && isOf(shown_, false);
   if (hasNext_) {
@@ -185,7 +185,7 @@ void CompositeGenerations::beginNext(bool isBetween, bool mayBegin) {
     }
     dropNext();
   }
-  if (mayBegin && !isOf(shown_, toOther)) {
+  if ((toOther ? mayBegin.toMix : mayBegin.toExchange) && !isOf(shown_, toOther)) {
     setSteps(next_, toOther);
     next_.since = next_.stamp;
     next_.side = shown_.side == 0 ? 1 : 0;

@@ -37,9 +37,13 @@ class CompositeGenerations {
 
   /// Every frame: takes the kind's enabled layers. `reliefStream` is that of the heights that layers may colour.
   void update(CompositeKind kind, const LayerManager& layers, std::uint32_t reliefStream);
-  /// Then: goes on to other steps. `mixes`: two steps of this kind may be mixed; `mayBegin`: what was wanted of the
-  /// shown generation is there, or drawn.
-  void follow(bool mixes, bool mayBegin);
+  /// Whether a next generation may begin, once what was wanted of the shown one is there, or drawn.
+  struct Leave {
+    bool toMix = true;       ///< to be mixed with what is shown
+    bool toExchange = true;  ///< to take its place
+  };
+  /// Then: goes on to other steps. `mixes`: two steps of this kind may be mixed.
+  void follow(bool mixes, const Leave& mayBegin);
   /// The pool has no room for the next generation.
   void setCrowded() { crowded_ = true; }
   [[nodiscard]] bool isCrowded() const { return crowded_; }
@@ -76,7 +80,7 @@ class CompositeGenerations {
   [[nodiscard]] bool isOf(const Generation& generation, bool other) const;
   void setSteps(Generation& generation, bool other);
   void keepPair();
-  void beginNext(bool isBetween, bool mayBegin);
+  void beginNext(bool isBetween, const Leave& mayBegin);
   void weighPair(bool isBetween);
   void dropNext();
   void exchange();

@@ -45,12 +45,15 @@ void CompositeStore::beginFrame(std::uint64_t frame) {
   composer_->beginFrame(frame);
   gathering_.beginFrame();
   for (const CompositeKind kind : allCompositeKinds) {
+    of(kind).isExchanged = false;
     updateKind(kind);
   }
   updateMixing();
   for (const CompositeKind kind : allCompositeKinds) {
     // Where nothing is drawn the last step is finished first as well, or a surface that is still filled never would be.
-    generations(kind).follow(interpolates_ && fading_ == kind, !of(kind).drawn.empty() || !lackedSome_);
+    // One that was never drawn keeps it: whoever waits for it to be filled takes it at any time.
+    const bool mayBegin = !of(kind).drawn.empty() || !lackedSome_;
+    generations(kind).follow(interpolates_ && fading_ == kind, {mayBegin, mayBegin && wasDrawn_});
   }
 }
 
@@ -189,6 +192,9 @@ bool CompositeStore::nextCovers(CompositeKind kind) const {
     return stateOf(nextKey(kind, tile.index, tile.colourLevel)).present;
   };
   const std::vector<CompositeGathering::Drawn>& drawn = of(kind).drawn;
+  if (!wasDrawn_ && !generations(kind).pair().isHeld) {
+    return generations(kind).pair().isMixed;  // no other has been wanted as a whole
+  }
   for (int root = 0; root < tiling_->rootCount(); ++root) {
     if ((!drawn.empty() || generations(kind).pair().isHeld) &&
         !isPresent({{static_cast<std::uint8_t>(root), 0, 0, 0}})) {
@@ -238,13 +244,14 @@ void CompositeStore::compose(double milliseconds) {
   }
   for (const CompositeKind kind : allCompositeKinds) {
     CompositeGenerations& generations = this->generations(kind);
-    std::vector<CompositeGathering::Drawn>& drawn = of(kind).drawn;
     if (generations.hasNext() && (generations.isCrowded() || nextCovers(kind))) {
-      generations.endNext(!drawn.empty() || missing_ == 0);
+      const std::uint64_t shown = generations.shown().stamp;
+      const bool wasMixed = generations.pair().isMixed;
+      generations.endNext(!of(kind).drawn.empty() || missing_ == 0);
+      of(kind).isExchanged = generations.shown().stamp != shown || generations.pair().isMixed != wasMixed;
     }
-    of(kind).wasDrawn = !drawn.empty();
-    drawn.clear();
   }
+  isDrawnOld_ = true;
 }
 
 void CompositeStore::noteFull(const CompositeKey& key) {
@@ -287,9 +294,20 @@ CompositeStore::Composed CompositeStore::composeOne(const CompositeGathering::Qu
   return Composed::Done;
 }
 
+void CompositeStore::beginDrawing() {
+  wasDrawn_ = true;
+  if (isDrawnOld_) {
+    isDrawnOld_ = false;
+    for (Kind& kind : kinds_) {
+      kind.drawn.clear();
+    }
+  }
+}
+
 std::optional<CompositeStore::Placement> CompositeStore::place(CompositeKind kind, const TileIndex& index,
                                                                int colourLevel) {
   const CompositeGenerations& generations = this->generations(kind);
+  beginDrawing();
   if (generations.hasSteps()) {
     of(kind).drawn.push_back({index, colourLevel});
   }
@@ -326,20 +344,23 @@ std::optional<CompositeStore::Placement> CompositeStore::placeAt(const Composite
 std::string CompositeStore::waitingFor() const {
   for (const CompositeKind kind : allCompositeKinds) {
     const CompositeGenerations& generations = this->generations(kind);
+    const bool isDrawn = !of(kind).drawn.empty();  // a surface that is still filled is not
     if (generations.isOutdated(kind, layers_)) {
       return "layers have changed";
+    }
+    if (of(kind).isExchanged) {
+      return "layers show another time since this frame";
     }
     for (std::size_t i = 0; i < generations.layers().size(); ++i) {
       const Layer& layer = *generations.layers()[i];
       if (layer.awaitsData()) {
         return fmt::format("{} is being opened", layer.uri());
       }
-      if (of(kind).wasDrawn && !generations.pair().isHeld && layer.step() != generations.shown().steps[i]) {
+      if (isDrawn && !generations.pair().isHeld && layer.step() != generations.shown().steps[i]) {
         return fmt::format("{} shows another time", layer.uri());
       }
     }
-    if (of(kind).wasDrawn && generations.interpolated() != nullptr && !generations.pair().isMixed &&
-        kindBetweenSteps() == kind) {
+    if (isDrawn && generations.interpolated() != nullptr && !generations.pair().isMixed && kindBetweenSteps() == kind) {
       return fmt::format("{} shows one of two times", generations.interpolated()->uri());
     }
     if (inUse(kind) && composer_->programs().isOwnPending(kind)) {

@@ -69,6 +69,10 @@ class CompositeStore {
   /// Whether some enabled layer has finer data within the tile than the tile's own composites show.
   [[nodiscard]] bool hasFiner(const TileIndex& index) const { return owners_.hasFiner(index); }
 
+  /// Before a frame's first place(), also where nothing is placed: what was drawn before is not drawn any more. In
+  /// frames that are not drawn it counts as drawn: a host without a window draws none while it waits for a view to
+  /// settle.
+  void beginDrawing();
   /// What a chunk draws of a kind: its own composite or the nearest ancestor's; nothing where there is none.
   struct Placement {
     std::uint32_t slot = 0;
@@ -112,8 +116,8 @@ class CompositeStore {
     OpeningWait opening;
     FadeWatch fade;
     bool noRoomToFade = false;  ///< the pool has none for second composites, as long as this fade goes on
-    std::vector<CompositeGathering::Drawn> drawn;  ///< since the last compose(), where the kind has steps
-    bool wasDrawn = false;                         ///< in the last frame: a surface that is still filled is not
+    std::vector<CompositeGathering::Drawn> drawn;  ///< in the last frame that was drawn, where the kind has steps
+    bool isExchanged = false;  ///< what was wanted in this frame is of steps that are not drawn any more, or not alone
   };
 
   [[nodiscard]] Kind& of(CompositeKind kind) { return kinds_[static_cast<std::size_t>(kind)]; }
@@ -172,6 +176,8 @@ class CompositeStore {
   std::optional<CompositeKind> fading_;
   bool interpolates_ = false;  ///< `fading_` is mixed because it is between two steps in time
   std::optional<CompositeKind> mixing_;
+  bool isDrawnOld_ = true;  ///< what kinds have in `drawn` is of an earlier frame
+  bool wasDrawn_ = false;   ///< ever: a surface that is filled in place of another is not
   bool drewMixed_ = false;  ///< since the last beginFrame()
   bool mixedLast_ = false;  ///< in the last frame
   std::uint64_t composedCount_ = 0;

@@ -73,6 +73,12 @@ void GlobeTiles::want(const TileIndex& index, int colourLevel, double priority) 
   absent_ += surfaces_.find(index) != nullptr && coloured.present ? 0 : 1;
 }
 
+void GlobeTiles::renewShape(const TileIndex& index, double priority) {
+  if (surfaces_.isOutdated(index)) {
+    stale_ += surfaces_.want(index, priority) ? 0 : 1;
+  }
+}
+
 void GlobeTiles::keep(const TileIndex& index, int colourLevel) {
   surfaces_.keep(index);
   composites_.keep(index, colourLevel);

@@ -29,6 +29,7 @@ class GlobeTiles final : public TileResidency {
   void process(graphics::UploadBudget& uploads, double compositionMilliseconds);
 
   void want(const TileIndex& index, int colourLevel, double priority) override;
+  void renewShape(const TileIndex& index, double priority) override;
   void keep(const TileIndex& index, int colourLevel) override;
   [[nodiscard]] State state(const TileIndex& index, int colourLevel) const override;
   [[nodiscard]] HeightRange heightRange(const TileIndex& index) const override;

@@ -37,6 +37,12 @@ class SlotPool {
     return found->second;
   }
 
+  /// Whether the key has a slot that is marked as used in that frame or later.
+  [[nodiscard]] bool isUsed(const Key& key, std::uint64_t frame) const {
+    const auto found = byKey_.find(key);
+    return found != byKey_.end() && slots_[found->second].lastUsed >= frame;
+  }
+
   /// A slot for a key that has none, taken from the key longest unused, which `evicted` is told. Nothing when every
   /// slot was used in this frame.
   template <class Evicted>

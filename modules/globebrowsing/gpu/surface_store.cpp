@@ -29,6 +29,9 @@ void SurfaceStore::beginFrame(std::uint64_t frame) {
   arrivals_.clear();
   const std::uint32_t before = heights_.stream();
   heights_.beginFrame();
+  if (heights_.stream() != before) {
+    outdated_ = resident_.size();
+  }
   if (heights_.stream() != before || evicted_.size() > mostEvicted) {
     evicted_.clear();
   }
@@ -79,7 +82,10 @@ bool SurfaceStore::place(const Arrival& arrival) {
   pool_.upload(*slot, *surface);
   lowest_ = std::min(lowest_, surface->heightRange().minimum);
   highest_ = std::max(highest_, surface->heightRange().maximum);
-  resident_[arrival.index] = {std::move(surface), heights_.stream(), ++lastStamp_, arrival.lack};
+  Resident& resident = resident_[arrival.index];
+  outdated_ -= resident.surface != nullptr && isOutdated(resident) ? 1 : 0;
+  resident = {std::move(surface), heights_.stream(), ++lastStamp_, arrival.lack};
+  outdated_ += isOutdated(resident) ? 1 : 0;
   evicted_.erase(arrival.index);
   deepest_ = std::max(deepest_, int{arrival.index.level});
   return true;
@@ -88,7 +94,9 @@ bool SurfaceStore::place(const Arrival& arrival) {
 void SurfaceStore::evict(const TileIndex& index) {
   const auto gone = resident_.find(index);
   const Resident& resident = gone->second;
-  if (resident.stream == heights_.stream() && resident.lack == 0) {
+  if (isOutdated(resident)) {
+    --outdated_;
+  } else {
     evicted_[index] = {resident.surface->heightRange(), index.level, resident.stamp};
   }
   resident_.erase(gone);
@@ -99,13 +107,28 @@ const ChunkSurface* SurfaceStore::find(const TileIndex& index) const {
   return found == resident_.end() ? nullptr : found->second.surface.get();
 }
 
+const ChunkSurface* SurfaceStore::findInForce(const TileIndex& index) const {
+  const auto found = resident_.find(index);
+  if (found == resident_.end() || (isOutdated(found->second) && !pool_.slots().isUsed(index, frame_))) {
+    return nullptr;
+  }
+  return found->second.surface.get();
+}
+
+bool SurfaceStore::isOutdated(const TileIndex& index) const {
+  if (outdated_ == 0) {
+    return false;
+  }
+  const auto found = resident_.find(index);
+  return found != resident_.end() && isOutdated(found->second);
+}
+
 SurfaceStore::Nearest SurfaceStore::nearest(const TileIndex& index) const {
   std::optional<TileIndex> at = index;
   while (at) {
     if (const auto found = resident_.find(*at); found != resident_.end()) {
       const Resident& resident = found->second;
-      const bool isUnlike = resident.lack > 0 || resident.stream != heights_.stream();
-      return {resident.surface.get(), at->level, resident.stamp, isUnlike};
+      return {resident.surface.get(), at->level, resident.stamp, isOutdated(resident)};
     }
     at = tiling_->parent(*at);
   }

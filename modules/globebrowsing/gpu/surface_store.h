@@ -35,6 +35,10 @@ class SurfaceStore {
 
   /// The resident surface, current or not; null without one.
   [[nodiscard]] const ChunkSurface* find(const TileIndex& index) const;
+  /// find(), but null also where that is outdated and nobody used it in the last frame: such a surface is not drawn.
+  [[nodiscard]] const ChunkSurface* findInForce(const TileIndex& index) const;
+  /// Whether find() shows earlier heights, or lacks what was late.
+  [[nodiscard]] bool isOutdated(const TileIndex& index) const;
   /// The slot of find() in pool().
   [[nodiscard]] std::optional<std::uint32_t> slot(const TileIndex& index) const { return pool_.slots().peek(index); }
   [[nodiscard]] const SurfacePool& pool() const { return pool_; }
@@ -79,6 +83,9 @@ class SurfaceStore {
     unsigned stamp = 0;
     unsigned lack = 0;  ///< HeightComposition::lack, as it was made
   };
+  [[nodiscard]] bool isOutdated(const Resident& resident) const {
+    return resident.stream != heights_.stream() || resident.lack > 0;
+  }
   struct Arrival {
     TileIndex index;
     double priority = 0.0;
@@ -96,6 +103,7 @@ class SurfaceStore {
   SurfacePool pool_;
   std::unordered_map<TileIndex, Resident> resident_;
   std::unordered_map<TileIndex, KnownRange> evicted_;  ///< of the present heights, and complete
+  std::size_t outdated_ = 0;                           ///< residents
   std::vector<Arrival> arrivals_;
   std::uint64_t frame_ = 0;
   unsigned lastStamp_ = 0;

@@ -210,10 +210,10 @@ bool Layer::isReady() const {
 }
 
 bool Layer::isOpening() const {
-  const TileProvider::State state = provider_->state();
+  // What a worker has published since the last update is not in what was made after it.
   return sampling_ != Sampling::SolidColor &&
-         (state == TileProvider::State::NotOpened || state == TileProvider::State::Opening ||
-          (state == TileProvider::State::Ready && step_ == nullptr && player_.awaits()));
+         (seenState_ == TileProvider::State::NotOpened || seenState_ == TileProvider::State::Opening ||
+          (seenState_ == TileProvider::State::Ready && step_ == nullptr && player_.awaits()));
 }
 
 void Layer::restart(ProviderRequest request) {

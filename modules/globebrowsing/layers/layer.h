@@ -99,7 +99,7 @@ class Layer final : public PropertyOwner {
   [[nodiscard]] std::uint32_t stream() const { return step_ ? step_->stream() : 0; }
   /// Whether its tiles can be asked for: enabled, and step()'s provider is open.
   [[nodiscard]] bool isReady() const;
-  /// Whether it has nothing to show yet because its data are being opened.
+  /// Whether it has nothing to show yet because its data are being opened, by what the last update() saw.
   [[nodiscard]] bool isOpening() const;
   /// The same, or it shows an earlier step because the present one is being opened, or one alone because the one to mix
   /// it with is.

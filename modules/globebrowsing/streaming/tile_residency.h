@@ -40,6 +40,9 @@ class TileResidency {
   /// Asks for all that the tile needs, this frame; a greater priority is served first. What is not asked for again in
   /// the next frame is cancelled or becomes evictable.
   virtual void want(const TileIndex& index, int colourLevel, double priority) = 0;
+  /// Asks for the tile's shape alone, this frame, if it has one that shows other heights than it should by now. For
+  /// tiles that are not drawn: by its heights such a tile would be culled, or split, for ever.
+  virtual void renewShape(const TileIndex& index, double priority) = 0;
   /// Keeps what the tile has from being evicted this frame, without asking for more.
   virtual void keep(const TileIndex& index, int colourLevel) = 0;
   [[nodiscard]] virtual State state(const TileIndex& index, int colourLevel) const = 0;

@@ -90,6 +90,7 @@ std::size_t ChunkRenderer::draw(const Job& job, GlobeTiles& tiles) {
 
 void ChunkRenderer::prepare(const Job& job, GlobeTiles& tiles) {
   prepared_.clear();
+  tiles.composites().beginDrawing();
   for (const SelectedChunk& chunk : job.chunks) {
     const ChunkSurface* surface = tiles.surfaces().find(chunk.index);
     const std::optional<std::uint32_t> slot = tiles.surfaces().slot(chunk.index);

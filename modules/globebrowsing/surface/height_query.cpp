@@ -26,7 +26,7 @@ std::optional<std::pair<double, double>> within(double radius, const glm::dvec3&
 double heightAt(const SurfaceStore& surfaces, const Tiling& tiling, double latitude, double longitude) {
   for (int level = surfaces.deepestLevel(); level >= 0; --level) {
     const TilePlace place = tiling.locate(latitude, longitude, level);
-    if (const ChunkSurface* surface = surfaces.find(place.index)) {
+    if (const ChunkSurface* surface = surfaces.findInForce(place.index)) {
       return surface->heightAt(place.uv);
     }
   }

@@ -9,7 +9,8 @@
 
 namespace meridian::globebrowsing {
 
-/// Metres of the finest resident surface above the ellipsoid at that place (radians); 0 without one.
+/// Metres of the finest surface there is above the ellipsoid at that place (radians); 0 without one. Of one that shows
+/// earlier heights only as long as it is in use.
 [[nodiscard]] double heightAt(const SurfaceStore& surfaces, const Tiling& tiling, double latitude, double longitude);
 
 /// The first point on the ray, in front of its origin, where it goes below heightAt; to a part in 1e9 of the distance.

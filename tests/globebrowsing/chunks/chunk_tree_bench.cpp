@@ -18,6 +18,7 @@ namespace {
 class FreeResidency : public TileResidency {
  public:
   void want(const TileIndex&, int, double) override {}
+  void renewShape(const TileIndex&, double) override {}
   void keep(const TileIndex&, int) override {}
   [[nodiscard]] State state(const TileIndex&, int) const override { return State::Complete; }
   [[nodiscard]] HeightRange heightRange(const TileIndex&) const override { return {-100.0, 4000.0}; }

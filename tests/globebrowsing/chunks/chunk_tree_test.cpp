@@ -286,6 +286,31 @@ TEST_F(ChunkTreeTest, WhatIsSeenComesBeforeWhatIsBeside) {
   }
 }
 
+TEST_F(ChunkTreeTest, WhatIsCulledOrSplitByItsHeightsHasThemRenewed) {
+  for (const bool prefetch : {true, false}) {
+    settings_.prefetch = prefetch;
+    const std::set<TileIndex> drawn = select(above(0.7, 0.2, 1e5, 0.3, 0.5));
+    std::set<TileIndex> renewed;
+    for (const FakeResidency::Wish& wish : residency_.wishes) {
+      if (wish.renewed) {
+        EXPECT_FALSE(wish.wanted) << "with all else";
+        EXPECT_LE(wish.priority, 1.0) << "after all that is drawn";
+        renewed.insert(wish.index);
+      }
+    }
+    std::set<TileIndex> split;
+    for (const TileIndex& index : drawn) {
+      for (auto up = tiling_.parent(index); up && up->level > 0; up = tiling_.parent(*up)) {
+        EXPECT_TRUE(renewed.contains(*up)) << toString(*up);
+        split.insert(*up);
+      }
+    }
+    const SelectionFigures& figures = tree_.figures();
+    EXPECT_GT(figures.culledHorizon, 0U);
+    EXPECT_GE(renewed.size() + 2, split.size() + figures.culledHorizon + (prefetch ? 0 : figures.culledFrustum));
+  }
+}
+
 TEST_F(ChunkTreeTest, OneSelectionServesAllViews) {
   const SelectionView left = above(0.7, 0.2, 1e5, 0.0, 0.6);
   const SelectionView right = above(0.7, 0.2, 1e5, 2.0, 0.6);

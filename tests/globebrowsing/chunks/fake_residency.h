@@ -6,6 +6,8 @@
 #include <functional>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "globebrowsing/streaming/tile_residency.h"
 
 namespace meridian::globebrowsing {
@@ -26,6 +28,8 @@ class FakeResidency final : public TileResidency {
     double priority = 0.0;
     bool kept = false;
     bool wanted = false;
+    bool renewed = false;
+    [[nodiscard]] bool isMade() const { return kept || wanted || renewed; }
   };
   static constexpr std::size_t size = 1U << 16U;
 
@@ -41,6 +45,14 @@ class FakeResidency final : public TileResidency {
     Wish& wish = wishes[slot(index)];
     wish.index = index;
     wish.wanted = true;
+    wish.priority = priority;
+    allFinite = allFinite && std::isfinite(priority);
+  }
+  void renewShape(const TileIndex& index, double priority) override {
+    Wish& wish = wishes[slot(index)];
+    EXPECT_FALSE(wish.wanted && wish.index == index) << "asked for twice";
+    wish.index = index;
+    wish.renewed = true;
     wish.priority = priority;
     allFinite = allFinite && std::isfinite(priority);
   }
@@ -75,7 +87,7 @@ class FakeResidency final : public TileResidency {
  private:
   [[nodiscard]] std::size_t slot(const TileIndex& index) const {
     std::size_t place = std::hash<TileIndex>()(index) % size;
-    while ((wishes[place].kept || wishes[place].wanted) && wishes[place].index != index) {
+    while (wishes[place].isMade() && wishes[place].index != index) {
       place = (place + 1) % size;
     }
     return place;

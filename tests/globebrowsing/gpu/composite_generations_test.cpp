@@ -64,11 +64,30 @@ TEST_F(CompositeGenerationsTest, FinishesAStepOnTheWayAndGivesUpOneBehindATurn) 
 TEST_F(CompositeGenerationsTest, BeginsNoStepBeforeItMay) {
   addDays(false);
   frame(0.5);
-  mayBegin_ = false;
+  mayBegin_ = {false, false};
   frame(1.5);
   EXPECT_FALSE(base().hasNext());
-  mayBegin_ = true;
+  mayBegin_ = {};
   frame(1.5);
+  EXPECT_TRUE(base().hasNext());
+}
+
+TEST_F(CompositeGenerationsTest, MixesWithoutBeingExchanged) {
+  addDays(true);
+  mixes_ = true;
+  mayBegin_ = {true, false};
+  frame(0.25);
+  EXPECT_TRUE(base().pair().isHeld);
+  base().endNext(true);
+  EXPECT_TRUE(base().pair().isMixed);
+  mixes_ = false;
+  frame(-1.0);
+  EXPECT_FALSE(base().hasNext()) << "given up";
+  frame(1.75);
+  EXPECT_FALSE(base().hasNext());
+  EXPECT_EQ(dayOf(base().shown()), 0.0);
+  mayBegin_ = {};
+  frame(1.75);
   EXPECT_TRUE(base().hasNext());
 }
 
@@ -132,7 +151,7 @@ TEST_F(CompositeGenerationsTest, LayersThatStayKeepTheirStepWhenOthersCome) {
   add({{"Identifier", "S"}, {"Type", "SolidColor"}});
   EXPECT_TRUE(base().isOutdated(CompositeKind::Base, layers_));
   const std::uint64_t changes = base().changes();
-  mayBegin_ = false;
+  mayBegin_ = {false, false};
   frame(1.5);
   EXPECT_FALSE(base().isOutdated(CompositeKind::Base, layers_));
   EXPECT_GT(base().changes(), changes);

@@ -87,7 +87,7 @@ class CompositesTest : public testing::Test {
   CompositeOwners::Generations generations_;
   std::uint32_t reliefStream_ = 1;
   bool mixes_ = false;
-  bool mayBegin_ = true;
+  CompositeGenerations::Leave mayBegin_;
 };
 
 }  // namespace meridian::globebrowsing

@@ -1,8 +1,10 @@
 #include <fstream>
+#include <regex>
 
 #include <gmock/gmock.h>
 
 #include "globe_fixture.h"
+#include "globebrowsing/surface/chunked_surface.h"
 
 namespace meridian::globebrowsing {
 namespace {
@@ -176,6 +178,73 @@ TEST_F(TimeStepsTest, GoesOnWithoutRoomForTwoTimes) {
     EXPECT_NE(now.front(), 0);
   }));
   EXPECT_EQ(seen(), std::vector<int>{2});
+  EXPECT_EQ(unsettled(), "") << "what was complete stays so";
+}
+
+// As a film does it: each frame is drawn once, waited for without drawing, and drawn again.
+TEST_F(TimeStepsTest, SettlesInFramesThatAreNotDrawn) {
+  time_ = dayOf(1);
+  look(0.1, 0.2, 9e6);
+  addGlobe({{"ColorLayers", listOf({monthly("M", 2048, {}, 4)})}});
+  ASSERT_TRUE(settle());
+  for (const int month : {2, 3, 4, 1}) {
+    time_ = dayOf(month);
+    frame();
+    ASSERT_TRUE(framesUntil([&] { return unsettled().empty(); }, false)) << unsettled();
+    frame();
+    EXPECT_EQ(unsettled(), "");
+    EXPECT_EQ(seen(), std::vector<int>{month});
+  }
+}
+
+TEST_F(TimeStepsTest, TheNextTimeIsFilledInFramesThatAreNotDrawn) {
+  time_ = dayOf(1);
+  look(0.1, 0.2, 9e6);
+  RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({monthly("M", 2048, {}, 2)})}});
+  ASSERT_TRUE(settle());
+  const CompositeStore& store = dynamic_cast<ChunkedSurface&>(*globe.surface()).tiles().composites();
+  const std::uint64_t composed = store.composedCount();
+  time_ = dayOf(2);
+  frame();
+  // Exchanged for nothing, it would be seen in whichever frame is drawn next.
+  const auto isShown = [&] { return !std::regex_search(unsettled(), std::regex("another time|being opened")); };
+  ASSERT_FALSE(isShown()) << unsettled();
+  ASSERT_TRUE(framesUntil(isShown, false));
+  EXPECT_GT(store.composedCount(), composed);
+  frame();
+  EXPECT_EQ(seen(), std::vector<int>{2});
+}
+
+TEST_F(TimeStepsTest, AFinerTimeIsNotCompleteInTheFrameThatShowsIt) {
+  time_ = dayOf(1);
+  look(0.1, 0.2, 9e6);
+  const Value layer = monthly("M", 64, {}, 2);
+  uniformRaster("M/m2004-02.tif", colourOf(2), 4096);
+  addGlobe({{"ColorLayers", listOf({layer})}});
+  ASSERT_TRUE(settle());
+  time_ = dayOf(2);
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(unsettled(), "") << "what was complete stays so";
+}
+
+TEST_F(TimeStepsTest, AnotherPoolIsFilledBeforeItIsDrawnWhileTimeGoesOn) {
+  setModuleProperty("CompositionBudget", 0.1);
+  time_ = dayOf(1, 1);
+  RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({monthly("M")})}});
+  ASSERT_TRUE(settle());
+  for (const int size : {128, 256, 512}) {
+    setModuleProperty("TexturePoolSize", size);
+    const Surface* before = globe.surface();
+    int after = 0;
+    ASSERT_TRUE(framesUntil([&] {
+      time_ = time_ + (time_ > dayOf(11) ? -300.0 : 10.0) * 86400.0;
+      const std::vector<int> now = seen();
+      EXPECT_EQ(now.size(), 1U) << "two times at once, or none";
+      EXPECT_NE(now.front(), 0);
+      after += globe.surface() != before ? 1 : 0;
+      return testing::Test::HasFailure() || after > 10;
+    }));
+  }
 }
 
 TEST_F(TimeStepsTest, ASequenceFollowsItsIndex) {

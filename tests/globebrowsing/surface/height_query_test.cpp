@@ -131,6 +131,86 @@ TEST_F(HeightQueryTest, HeightsOfEvictedTilesStayKnown) {
   EXPECT_GT(evicted, 0);
 }
 
+TEST_F(HeightQueryTest, HeightsOfBeforeAreForgottenWhereNothingDrawsThem) {
+  Layer& layer = *globe_->layers().group(LayerGroupId::HeightLayers).find("H");
+  look(20.0 * degree, 30.0 * degree, 4e7);  // what was drawn near lies about, finer than what is drawn now
+  ASSERT_TRUE(settle());
+  layer.multiplier.put(0.5);
+  ASSERT_TRUE(settle());
+  for (double longitude = 20.0; longitude <= 40.0; longitude += 5.0) {
+    const double expected = 0.5 * relief(longitude, 20.0);
+    EXPECT_NEAR(globe_->heightAt(20.0 * degree, longitude * degree), expected, 100.0) << longitude;
+    const glm::dvec3 down = -globe_->normal(20.0 * degree, longitude * degree);
+    const auto hit = globe_->pick(globe_->cartesian({20.0 * degree, longitude * degree, 1e5}), down);
+    ASSERT_TRUE(hit);
+    EXPECT_NEAR(globe_->geodetic(*hit).height, expected, 100.0) << longitude;
+  }
+}
+
+TEST_F(HeightQueryTest, WhatIsDrawnIsStoodOnWhileHeightsChange) {
+  Layer& layer = *globe_->layers().group(LayerGroupId::HeightLayers).find("H");
+  const double before = globe_->heightAt(20.0 * degree, 30.0 * degree);
+  layer.multiplier.put(0.5);
+  ASSERT_TRUE(settle([&] {
+    const double now = globe_->heightAt(20.0 * degree, 30.0 * degree);
+    EXPECT_TRUE(std::abs(now - before) < 1e-3 || std::abs(now - 0.5 * before) < 1.0) << now;
+  }));
+  EXPECT_NEAR(globe_->heightAt(20.0 * degree, 30.0 * degree), 0.5 * before, 1.0);
+}
+
+/// A plain with a mountain beyond its horizon.
+class HorizonTest : public GlobeTest {
+ protected:
+  static constexpr double mountain = 24.5;  ///< degrees of longitude, on the equator
+  static double plainWithMountain(double longitude, double latitude) {
+    // Smooth: what interpolates must not dig a moat, below which the horizon would lie further away.
+    const double away = std::hypot(longitude - mountain, latitude);
+    return 60000.0 * std::exp(-4.0 * away * away);
+  }
+  /// From a plane over the plain, towards the mountain.
+  void lookAlong() {
+    const double longitude = 17.5 * degree;  // its horizon is 1.4 degrees away
+    const glm::dvec3 up(std::cos(longitude), std::sin(longitude), 0.0);
+    const glm::dvec3 east(-std::sin(longitude), std::cos(longitude), 0.0);
+    look(0.0, longitude, radius + 2000.0);
+    view_.cameraFromModel = glm::lookAt(view_.cameraPosition, view_.cameraPosition + east, up);
+  }
+  static bool isSelected(RenderableGlobe& globe) {
+    const GeodeticTiling tiling(*Ellipsoid::fromRadii(globe.radii()));
+    for (const SelectedChunk& chunk : dynamic_cast<ChunkedSurface&>(*globe.surface()).selected()) {
+      if (tiling.locate(0.0, mountain * degree, chunk.index.level).index == chunk.index) {
+        return true;
+      }
+    }
+    return false;
+  }
+};
+
+TEST_F(HorizonTest, AMountainRisesThatWasFlatWhenItWasCulled) {
+  const std::string file = raster(
+      "mountain.tif", [](int, double longitude, double latitude) { return plainWithMountain(longitude, latitude); }, 1,
+      GDT_Float32, 2048);
+  RenderableGlobe& globe = addGlobe({{"HeightLayers", listOf({fileLayer("H", file)})}});
+  Layer& layer = *globe.layers().group(LayerGroupId::HeightLayers).find("H");
+  lookAlong();
+  ASSERT_TRUE(settle());
+  EXPECT_TRUE(isSelected(globe));
+  layer.multiplier.put(0.0);
+  ASSERT_TRUE(settle());
+  EXPECT_FALSE(isSelected(globe));
+  // So that tiles of all sizes that a selection may ask about are there, and flat.
+  for (const double distance : {7e6, 6.7e6, 6.5e6, 6.45e6, 6.42e6}) {
+    look(0.0, mountain * degree, distance);
+    ASSERT_TRUE(settle());
+  }
+  lookAlong();
+  ASSERT_TRUE(settle());
+  EXPECT_FALSE(isSelected(globe));
+  layer.multiplier.put(1.0);
+  ASSERT_TRUE(settle());
+  EXPECT_TRUE(isSelected(globe));
+}
+
 TEST_F(HeightQueryTest, SkirtsReachBelowEveryGapAndViewsSeeOnlyTheirChunks) {
   auto& surface = dynamic_cast<ChunkedSurface&>(*globe_->surface());
   ASSERT_FALSE(surface.selected().empty());
