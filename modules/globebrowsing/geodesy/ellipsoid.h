@@ -17,7 +17,9 @@ namespace meridian::globebrowsing {
 /// longitude is 0; at the centre the answer is the end of the shortest axis; never not-a-number for finite input.
 class Ellipsoid {
  public:
-  /// Errors: a semi-axis that is not finite or not positive.
+  static constexpr double leastRadius = 1e-3;     ///< metres
+  static constexpr double greatestRadius = 1e15;  ///< metres; squares of squares of it are still numbers
+  /// Errors: a semi-axis that is not between these.
   [[nodiscard]] static Result<Ellipsoid> fromRadii(const glm::dvec3& radii);
 
   [[nodiscard]] const glm::dvec3& radii() const { return radii_; }

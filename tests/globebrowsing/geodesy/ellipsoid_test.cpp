@@ -213,7 +213,7 @@ INSTANTIATE_TEST_SUITE_P(Triaxial, AnyEllipsoidTest, triaxial, nameOf);
 TEST(EllipsoidTest, RefusesRadiiThatAreNoLengths) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
-  for (const double bad : {0.0, -1.0, nan, infinity, -infinity}) {
+  for (const double bad : {0.0, -1.0, nan, infinity, -infinity, 1e-300, 1e300}) {
     for (int axis = 0; axis < 3; ++axis) {
       glm::dvec3 radii(1000.0);
       radii[axis] = bad;
