@@ -30,6 +30,7 @@ struct LayerServices {
   WorkerPool* workers = nullptr;
   TileStreamer* streamer = nullptr;
   std::shared_ptr<SourceTileStore> sourceTiles{};  ///< of map services
+  HeightLimits heightLimits{};                     ///< of the globe
 };
 
 /// One layer of a globe: its provider, and its properties below Layers.GROUP.IDENTIFIER. Render thread only.

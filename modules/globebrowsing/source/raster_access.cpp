@@ -191,6 +191,18 @@ Result<std::shared_ptr<RasterHandle>> RasterAccess::borrow() const {
   });
 }
 
+std::optional<Error> RasterAccess::flaw() const {
+  const std::lock_guard lock(flawMutex_);
+  return flaw_;
+}
+
+void RasterAccess::keepFlaw(const ReadNotes& notes) const {
+  const std::lock_guard lock(flawMutex_);
+  if (!flaw_ && notes.implausible) {
+    flaw_ = implausibleHeight(*notes.implausible, heightRule_.limits, pyramid_.where);
+  }
+}
+
 bool RasterAccess::isKept(std::size_t level, std::size_t pixelBytes) const {
   const RasterLevel& l = levels_[level];
   // Datasets with overviews are laid out for reading windows; nothing is gained by keeping their own levels.
@@ -231,9 +243,11 @@ Result<void> RasterAccess::readStrips(RasterHandle& handle, const RasterLevel& l
     Pixel* target = out + row * stride;
     strip.resize(isDirect ? 0 : static_cast<std::size_t>(columns) * static_cast<std::size_t>(request.rows()));
     Pixel* into = isDirect ? target : strip.data();
-    if (auto done = readPixels(handle.dataset(), rule(target), request, into, pyramid_.where); !done) {
+    ReadNotes notes;
+    if (auto done = readPixels(handle.dataset(), rule(target), request, into, pyramid_.where, notes); !done) {
       return done;
     }
+    keepFlaw(notes);
     for (int r = 0; r < rows && !isDirect; ++r) {
       const Pixel* from = strip.data() + static_cast<std::ptrdiff_t>(r) * factor * columns;
       reduce(from, columns, std::min(factor, request.rows() - r * factor), factor, target + r * stride);

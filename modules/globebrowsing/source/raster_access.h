@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -43,6 +44,8 @@ class RasterAccess {
   /// With a dataset that goes back to the pool when the reader is destroyed, which must be before the access is.
   [[nodiscard]] Result<std::unique_ptr<PixelReader>> reader() const;
 
+  [[nodiscard]] std::optional<Error> flaw() const;
+
   /// Bytes of pixels kept in memory.
   [[nodiscard]] std::size_t residentBytes() const;
 
@@ -60,6 +63,7 @@ class RasterAccess {
   /// The borrowed handle goes back to the pool when the pointer is destroyed.
   [[nodiscard]] Result<std::shared_ptr<RasterHandle>> borrow() const;
   [[nodiscard]] Result<void> prepareColours(GDALDataset& dataset) const;
+  void keepFlaw(const ReadNotes& notes) const;
   [[nodiscard]] bool isKept(std::size_t level, std::size_t pixelBytes) const;
 
   template <class Pixel>
@@ -80,6 +84,8 @@ class RasterAccess {
   RasterInfo info_;
   std::vector<RasterLevel> levels_;  ///< of the pyramid's, where they come from
   HeightRule heightRule_;
+  mutable std::mutex flawMutex_;
+  mutable std::optional<Error> flaw_;
   mutable std::mutex colourRuleMutex_;
   mutable bool hasColourRule_ = false;
   mutable ColourRule colourRule_;

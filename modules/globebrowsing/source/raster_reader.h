@@ -46,6 +46,12 @@ struct HeightRule {
   bool isSignedByte = false;  ///< bytes over 127 are negative
   bool isWide = false;        ///< values need a double
   bool hasMask = false;
+  HeightLimits limits{};  ///< metres; what is beyond has no data
+};
+
+/// What was found wrong while reading, beside errors.
+struct ReadNotes {
+  std::optional<double> implausible{};  ///< metres, beyond the limits
 };
 
 /// From the bands' descriptions; for samples without a natural range also from their statistics, which may read.
@@ -62,10 +68,10 @@ struct ReadRequest {
   [[nodiscard]] int rows() const { return (window.height - 1) / step + 1; }
 };
 
-/// Read into rows of request.columns() pixels.
+/// Read into rows of request.columns() pixels. Adds to the notes.
 [[nodiscard]] Result<void> readPixels(GDALDataset& dataset, const ColourRule& rule, const ReadRequest& request,
-                                      Rgba* out, const std::string& where);
+                                      Rgba* out, const std::string& where, ReadNotes& notes);
 [[nodiscard]] Result<void> readPixels(GDALDataset& dataset, const HeightRule& rule, const ReadRequest& request,
-                                      float* out, const std::string& where);
+                                      float* out, const std::string& where, ReadNotes& notes);
 
 }  // namespace meridian::globebrowsing

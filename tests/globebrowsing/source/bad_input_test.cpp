@@ -1,6 +1,6 @@
 #include <fstream>
 
-#include "raster_fixture.h"
+#include "tile_service_fixture.h"
 
 namespace meridian::globebrowsing {
 namespace {
@@ -90,6 +90,46 @@ TEST_F(BadInput, ATruncatedRasterFailsTileByTile) {
     EXPECT_EQ(source.error().where, "earth.asset:9");
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(BadInput, HeightsOutOfAllProportionAreNoData) {
+  for (const double wild : {-9.9999998e33, 1e9, 1e8, -7e6}) {
+    const MadeRaster raster({512, 256, northUp(-180, 90, 360.0 / 512), GDT_Float32},
+                            [&](int, int column, int row) { return column == 300 && row == 100 ? wild : 100.0; });
+    RasterDescription description{raster.path(), "earth.asset:9"};
+    const GeodeticTiling tiling = earth();
+    description.heightLimits = tiling.ellipsoid().heightLimits();
+    const auto source = RasterSource::open(description);
+    ASSERT_TRUE(source);
+    EXPECT_FALSE((*source)->flaw());
+    const double longitude = -180.0 + 300.5 * 360.0 / 512;
+    const double latitude = 90.0 - 100.5 * 360.0 / 512;
+    // Coarse tiles average the pixels about it, which it must not spoil; fine ones have it alone.
+    for (const int level : {0, 1, 2, 8}) {
+      const auto pixels =
+          resampleHeights(**source, tiling, tileAt(tiling, latitude, longitude, level), heightLayout, {});
+      ASSERT_TRUE(pixels);
+      ASSERT_TRUE(pixels->any || level == 8);
+      EXPECT_NEAR(pixels->any ? pixels->minimum : 100.0, 100.0, 1e-3) << wild << " at level " << level;
+      EXPECT_NEAR(pixels->any ? pixels->maximum : 100.0, 100.0, 1e-3) << wild << " at level " << level;
+    }
+    ASSERT_TRUE((*source)->flaw());
+    EXPECT_EQ((*source)->flaw()->where, "earth.asset:9");
+    EXPECT_NE((*source)->flaw()->what.find("taken for no data"), std::string::npos) << (*source)->flaw()->message();
+  }
+}
+
+TEST_F(BadInput, HeightsOfAServiceOutOfAllProportionAreNoData) {
+  Served served(geographic, [](std::size_t, std::int64_t column, std::int64_t row) {
+    return Texel{column % 16 == 3 && row % 16 == 5 ? -1e30F : 700.0F, {1, 2, 3, 255}};
+  });
+  const GeodeticTiling tiling = earth();
+  const auto pixels = served.heights(tiling, TileIndex{0, 1, 0, 0});
+  ASSERT_TRUE(pixels && pixels->any);
+  EXPECT_NEAR(pixels->minimum, 700.0, 1e-3);
+  EXPECT_NEAR(pixels->maximum, 700.0, 1e-3);
+  ASSERT_TRUE(served.flaw);
+  EXPECT_NE(served.flaw->what.find("taken for no data"), std::string::npos) << served.flaw->message();
 }
 
 TEST_F(BadInput, AnAbsurdSizeCostsNothing) {
