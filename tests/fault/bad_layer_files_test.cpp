@@ -148,6 +148,28 @@ TEST_F(BadLayerFilesTest, AHeightThatNoBodyHas) {
   }
 }
 
+TEST_F(BadLayerFilesTest, AJpegThatEndsHalfWay) {
+  GDALAllRegister();
+  const std::string path = (folder_ / "whole.jpg").string();
+  {
+    const std::string noise = raster("noise.tif", [](int band, double longitude, double latitude) {
+      return std::abs(std::fmod(longitude * 37.0 + latitude * 91.0 + band * 50.0, 256.0));
+    });
+    GDALDatasetUniquePtr from(GDALDataset::Open(noise.c_str()));
+    GDALDatasetUniquePtr made(GetGDALDriverManager()->GetDriverByName("JPEG")->CreateCopy(path.c_str(), from.get(), 0,
+                                                                                          nullptr, nullptr, nullptr));
+    ASSERT_TRUE(made);
+  }
+  const std::string bytes = contents(path);
+  write("cut.jpg", bytes.substr(0, bytes.size() / 3));
+  RenderableGlobe& globe =
+      addGlobe({{"ColorLayers", listOf({fileLayer("Good", good_), fileLayer("Bad", (folder_ / "cut.jpg").string())})}});
+  ASSERT_TRUE(settle());
+  EXPECT_THAT(globe.layers().group(LayerGroupId::ColorLayers).find("Bad")->lastError.get(),
+              HasSubstr("cannot be read"));
+  EXPECT_EQ(centre(), (Pixel{10, 200, 30}));
+}
+
 TEST_F(BadLayerFilesTest, AFileThatComesLaterIsFoundByReset) {
   const std::string path = (folder_ / "later.tif").string();
   RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({fileLayer("Later", path)})}});

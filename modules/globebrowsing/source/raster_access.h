@@ -23,8 +23,12 @@ class RasterHandle {
   [[nodiscard]] GDALDataset& dataset() const { return *dataset_; }
   /// Null when the raster is in geographic coordinates.
   [[nodiscard]] const Projection* projection() const { return projection_.get(); }
+  /// After a failure: a decoder that has said once that its data end gives anything for the rest. It is not used again.
+  void spoil() { isSpoiled_ = true; }
+  [[nodiscard]] bool isSpoiled() const { return isSpoiled_; }
 
  private:
+  bool isSpoiled_ = false;
   GDALDataset* dataset_;
   std::unique_ptr<Projection> projection_;
 };
@@ -64,6 +68,8 @@ class RasterAccess {
   [[nodiscard]] Result<std::shared_ptr<RasterHandle>> borrow() const;
   [[nodiscard]] Result<void> prepareColours(GDALDataset& dataset) const;
   void keepFlaw(const ReadNotes& notes) const;
+  /// Whether the file is there to its end, where its header tells.
+  void checkLength() const;
   [[nodiscard]] bool isKept(std::size_t level, std::size_t pixelBytes) const;
 
   template <class Pixel>

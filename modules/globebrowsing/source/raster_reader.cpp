@@ -285,13 +285,14 @@ bool readAlpha(GDALDataset& dataset, const ColourRule& rule, const ReadRequest& 
 }  // namespace
 
 Result<void> readPixels(GDALDataset& dataset, const ColourRule& rule, const ReadRequest& request, Rgba* out,
-                        const std::string& where, ReadNotes& /*notes*/) {
+                        const std::string& where, ReadNotes& notes) {
   const GdalMessages messages;
   const bool isDirect = rule.isByte && rule.palette.empty();
   const bool isRead = isDirect ? readBytes(dataset, rule, request, out) : readValues(dataset, rule, request, out);
   if (!isRead || !readAlpha(dataset, rule, request, out)) {
     return cannotRead(messages, where);
   }
+  notes.warning = messages.warning();
   return {};
 }
 
@@ -336,6 +337,7 @@ Result<void> readPixels(GDALDataset& dataset, const HeightRule& rule, const Read
       out[i] = none;
     }
   }
+  notes.warning = messages.warning();
   return {};
 }
 

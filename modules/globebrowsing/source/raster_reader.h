@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "globebrowsing/source/raster_source.h"
@@ -52,6 +53,7 @@ struct HeightRule {
 /// What was found wrong while reading, beside errors.
 struct ReadNotes {
   std::optional<double> implausible{};  ///< metres, beyond the limits
+  std::string warning{};                ///< of GDAL's
 };
 
 /// From the bands' descriptions; for samples without a natural range also from their statistics, which may read.
