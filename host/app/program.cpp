@@ -1,14 +1,13 @@
 #include "host/app/program.h"
 
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "host/api/log.h"
+#include "host/api/regular_file.h"
 #include "host/app/application.h"
 #include "host/app/asset_check.h"
 #include "host/app/frame_writer.h"
@@ -56,13 +55,8 @@ Result<std::vector<ParsedSetting>> parseSettings(const std::vector<PropertySetti
 }
 
 Result<void> runScriptFile(Application& application, const fs::path& file) {
-  std::error_code ignored;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || fs::is_directory(file, ignored)) {
-    return failure("the script cannot be read", file.string(), "name a Lua file with --script");
-  }
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  return application.scripts().run(text, file.string());
+  return readRegularFile(file, largestText, "the script", "name a Lua file with --script")
+      .and_then([&](const std::string& text) { return application.scripts().run(text, file.string()); });
 }
 
 /// What the command line asks of a scene that is loaded.

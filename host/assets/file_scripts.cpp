@@ -4,12 +4,12 @@
 #include <cctype>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "host/api/log.h"
+#include "host/api/regular_file.h"
 #include "host/assets/unpack_zip.h"
 
 namespace meridian::assets {
@@ -141,18 +141,7 @@ ScriptFunction tester(const Files& files, std::string name, bool (*test)(const f
 }
 
 Result<std::string> contents(const fs::path& path) {
-  std::error_code error;
-  const std::uintmax_t size = fs::is_regular_file(path, error) ? fs::file_size(path, error) : 0;
-  std::ifstream file(path, std::ios::binary);
-  if (error || !fs::is_regular_file(path, error) || !file) {
-    return failure("the file cannot be read", path.string(), "check the path");
-  }
-  if (size > largestFile) {
-    return failure(fmt::format("the file is larger than {} MiB", largestFile >> 20), path.string());
-  }
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+  return readRegularFile(path, largestFile, "the file", "check the path");
 }
 
 /// The file that argument 1 names; empty text for one that was not synchronised.

@@ -1,14 +1,13 @@
 #include "host/assets/profile.h"
 
 #include <array>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "host/api/regular_file.h"
 #include "host/api/schema.h"
 #include "host/assets/json_value.h"
 
@@ -85,12 +84,9 @@ class ProfileReader {
 
  private:
   static Result<Value> parse(const fs::path& file) {
-    std::error_code ignored;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream || !fs::is_regular_file(file, ignored)) {
-      return failure("no such profile", file.string(), "check the path");
-    }
-    return valueFromJson(std::string{std::istreambuf_iterator<char>(stream), {}}, file.string());
+    return readRegularFile(file, largestText, "the profile", "check the path").and_then([&](const std::string& text) {
+      return valueFromJson(text, file.string());
+    });
   }
 
   [[nodiscard]] std::string place(const std::string& key) const { return file_.string() + ": " + key; }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "host/api/regular_file.h"
 #include "host/recording/formats.h"
 
 namespace meridian::recording {
@@ -84,11 +85,8 @@ Result<SessionRecording> parseSessionRecording(std::string_view content, std::st
 }
 
 Result<SessionRecording> readSessionRecording(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    return failure(
-        std::filesystem::exists(file, error) ? "the recording is not a regular file" : "there is no such file",
-        file.string(), "name a .osrectxt or .osrec file");
+  if (auto regular = requireRegularFile(file, "the recording", "name a .osrectxt or .osrec file"); !regular) {
+    return tl::make_unexpected(std::move(regular.error()));
   }
   std::ifstream stream(file, std::ios::binary);
   const std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};

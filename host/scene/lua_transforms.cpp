@@ -2,8 +2,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +11,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "host/api/log.h"
+#include "host/api/regular_file.h"
 #include "host/api/schema.h"
 #include "host/scene/transform_types.h"
 #include "host/scripting/script_engine.h"
@@ -36,14 +35,12 @@ class TransformScript {
     }
     fs::path file(*request.table.find("Script")->string());
     file = file.is_absolute() ? file : fs::path(request.folder) / file;
-    std::error_code ignored;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream || !fs::is_regular_file(file, ignored)) {
-      return failure("the script cannot be read", request.place("Script") + ": " + file.string(), "check its path");
+    const Result<std::string> text = readRegularFile(file, largestText, "the script", "check its path");
+    if (!text) {
+      return failure(text.error().what, request.place("Script") + ": " + file.string(), text.error().remedy);
     }
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
     std::unique_ptr<TransformScript> script(new TransformScript(std::move(function)));
-    if (auto done = script->engine_.run(text, file.string()); !done) {
+    if (auto done = script->engine_.run(*text, file.string()); !done) {
       return tl::make_unexpected(done.error());
     }
     return script;

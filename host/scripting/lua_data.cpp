@@ -1,11 +1,10 @@
 #include "host/scripting/lua_data.h"
 
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include <lua.hpp>
 
+#include "host/api/regular_file.h"
 #include "host/scripting/lua_value.h"
 #include "host/scripting/script_engine.h"
 
@@ -18,14 +17,12 @@ constexpr ScriptLimits limits{std::size_t{64} << 20, 10'000'000};
 }  // namespace
 
 Result<Value> readLuaData(const std::filesystem::path& file) {
-  std::error_code ignored;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(file, ignored)) {
-    return failure("the file cannot be read", file.string(), "check the path");
+  const Result<std::string> text = readRegularFile(file, largestText, "the file", "check the path");
+  if (!text) {
+    return tl::make_unexpected(text.error());
   }
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
   ScriptEngine engine(limits);
-  if (auto loaded = engine.load(text, file.string()); !loaded) {
+  if (auto loaded = engine.load(*text, file.string()); !loaded) {
     return tl::make_unexpected(loaded.error());
   }
   // Its globals go into a table of their own, behind which lie those of the sandbox.

@@ -75,7 +75,8 @@ RenderableGlobe::RenderableGlobe(std::shared_ptr<const Tiling> tiling, GlobeServ
     : Renderable("RenderableGlobe"),
       tiling_(std::move(tiling)),
       services_(services),
-      layers_({&services.workers(), &services.streamer(), services.sourceTiles(), services.tokenFolder()}) {
+      layers_({&services.workers(), &services.streamer(), services.sourceTiles(), tiling_->ellipsoid().heightLimits(),
+               services.tokenFolder()}) {
   addProperties();
 }
 

@@ -124,6 +124,52 @@ TEST_F(BadLayerFilesTest, PixelsThatEndHalfWay) {
   EXPECT_NE(centre(), (Pixel{0, 0, 0}));
 }
 
+/// Values without data that nobody declared, and a wrong unit.
+TEST_F(BadLayerFilesTest, AHeightThatNoBodyHas) {
+  const std::string low = raster(
+      "low.tif", [](int, double, double) { return 700.0; }, 1, GDT_Float32, 64);
+  for (const double wild : {-9.9999998e33, 1e9, 1e8, -7e6}) {
+    const std::string file = raster(
+        "wild.tif",
+        [&](int, double longitude, double latitude) {
+          return std::abs(longitude - 11.5) < 3.0 && std::abs(latitude - 5.7) < 3.0 ? wild : 2500.0;
+        },
+        1, GDT_Float32, 64);
+    RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({fileLayer("Good", good_)})},
+                                       {"HeightLayers", listOf({fileLayer("Low", low), fileLayer("Wild", file)})}});
+    ASSERT_TRUE(settle()) << wild;
+    EXPECT_EQ(centre(), (Pixel{10, 200, 30})) << wild;
+    const LayerGroup& heights = globe.layers().group(LayerGroupId::HeightLayers);
+    EXPECT_THAT(heights.find("Wild")->lastError.get(), HasSubstr("taken for no data"));
+    EXPECT_EQ(heights.find("Low")->lastError.get(), "");
+    EXPECT_NEAR(globe.heightAt(0.1, 0.2), 700.0, 1.0) << wild;
+    EXPECT_NEAR(globe.heightAt(0.1, 0.5), 2500.0, 1.0) << wild;
+    removeGlobes();
+  }
+}
+
+TEST_F(BadLayerFilesTest, AJpegThatEndsHalfWay) {
+  GDALAllRegister();
+  const std::string path = (folder_ / "whole.jpg").string();
+  {
+    const std::string noise = raster("noise.tif", [](int band, double longitude, double latitude) {
+      return std::abs(std::fmod(longitude * 37.0 + latitude * 91.0 + band * 50.0, 256.0));
+    });
+    GDALDatasetUniquePtr from(GDALDataset::Open(noise.c_str()));
+    GDALDatasetUniquePtr made(GetGDALDriverManager()->GetDriverByName("JPEG")->CreateCopy(path.c_str(), from.get(), 0,
+                                                                                          nullptr, nullptr, nullptr));
+    ASSERT_TRUE(made);
+  }
+  const std::string bytes = contents(path);
+  write("cut.jpg", bytes.substr(0, bytes.size() / 3));
+  RenderableGlobe& globe =
+      addGlobe({{"ColorLayers", listOf({fileLayer("Good", good_), fileLayer("Bad", (folder_ / "cut.jpg").string())})}});
+  ASSERT_TRUE(settle());
+  EXPECT_THAT(globe.layers().group(LayerGroupId::ColorLayers).find("Bad")->lastError.get(),
+              HasSubstr("cannot be read"));
+  EXPECT_EQ(centre(), (Pixel{10, 200, 30}));
+}
+
 TEST_F(BadLayerFilesTest, AFileThatComesLaterIsFoundByReset) {
   const std::string path = (folder_ / "later.tif").string();
   RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({fileLayer("Later", path)})}});

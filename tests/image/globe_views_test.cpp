@@ -144,6 +144,18 @@ constexpr ViewCase hollowViews[] = {
     {"antimeridian", -20, 180, 5e3, ground, 80, -15},
 };
 
+/// Flatter than any body that is known: its face bends twenty-five times less than a sphere, its rim that much more.
+constexpr SmoothWorld disc{"Disc", {2.5e6, 2.5e6, 5.0e5}, 3000.0, 6.0, true};
+constexpr ViewCase discViews[] = {
+    {"whole body on its edge", 0, 20, 7e6, ellipsoid, 0, -90},
+    {"whole body on its face", 90, 0, 7e6, ellipsoid, 0, -90},
+    {"whole body oblique", 30, 50, 6e6, ellipsoid, 20, -90},
+    {"limb", -65, 140, 4e5, ellipsoid, 80, -30},
+    {"2 km over the face", 85, 75, 2e3, ground, 15, -10},
+    {"along the rim", 0, 180, 5e4, ellipsoid, 90, -20},
+    {"north pole beside", 89, 45, 4e4, ellipsoid, 0, -25},
+};
+
 Eye eyeOf(const SmoothWorld& world, const ViewCase& view) {
   const double longitude = view.longitude * degree;
   const double heading = view.heading * degree;
@@ -231,7 +243,7 @@ class GlobeViews : public ::testing::Test {
 };
 
 constexpr std::size_t viewCount = std::size(earthViews) + std::size(marsViews) + std::size(triaxialViews) +
-                                  std::size(tinyViews) + std::size(hollowViews);
+                                  std::size(tinyViews) + std::size(hollowViews) + std::size(discViews);
 static_assert(viewCount >= 60);
 
 TEST_F(GlobeViews, EarthIsWhatRaysMeet) {
@@ -248,6 +260,9 @@ TEST_F(GlobeViews, ATinyBodyIsWhatRaysMeet) {
 }
 TEST_F(GlobeViews, ABodyOfHollowsIsWhatRaysMeet) {
   checkAll(hollow, hollowViews);
+}
+TEST_F(GlobeViews, AFlatBodyIsWhatRaysMeet) {
+  checkAll(disc, discViews);
 }
 
 /// Frames right after a jump, when only coarser tiles are there.

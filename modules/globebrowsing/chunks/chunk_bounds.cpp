@@ -45,30 +45,109 @@ HeightRange ordered(const HeightRange& heights) {
   return {std::min(minimum, maximum), std::max(minimum, maximum)};
 }
 
-/// How far the surface leaves the bilinear cells between the samples, at most: |f_uu| du^2 / 8 + |f_vv| dv^2 / 8.
+/// How far a surface may leave the bilinear cells between the samples.
+struct Margin {
+  double metres = 0.0;
+  double scaled = 0.0;  ///< the same in scaled space
+};
+
+struct Squares {
+  double sine = 0.0;
+  double cosine = 1.0;
+};
+
+/// What bounds the squares of sine and cosine, and their product, between two angles that are at most pi apart.
+struct Arc {
+  std::array<Squares, 2> extremes;  ///< with the least sine and the greatest
+  double product = 0.0;             ///< greatest |sine * cosine|
+
+  Arc(double first, double last) {
+    const auto squaresAt = [](double angle) {
+      return Squares{std::sin(angle) * std::sin(angle), std::cos(angle) * std::cos(angle)};
+    };
+    const double low = std::min(first, last);
+    const double high = std::max(first, last);
+    extremes = {squaresAt(low), squaresAt(high)};
+    if (extremes[0].sine > extremes[1].sine) {
+      std::swap(extremes[0], extremes[1]);
+    }
+    // At even quarter turns the sine is 0, at odd ones the cosine; half way between both are alike.
+    constexpr double quarter = std::numbers::pi / 2.0;
+    for (auto turn = static_cast<int>(std::ceil(low / quarter)); turn <= std::floor(high / quarter); ++turn) {
+      (turn % 2 == 0 ? extremes[0] : extremes[1]) = turn % 2 == 0 ? Squares{0.0, 1.0} : Squares{1.0, 0.0};
+    }
+    const bool hasHalfWay = std::floor(low / quarter - 0.5) != std::floor(high / quarter - 0.5);
+    product = hasHalfWay ? 0.5 : 0.5 * std::max(std::abs(std::sin(2.0 * low)), std::abs(std::sin(2.0 * high)));
+  }
+};
+
+/// What bounds the bend of a tile's surface. All is bilinear in the squared sines of latitude and longitude, or less
+/// than a product of what is, so the tile's corners hold the extremes.
+struct Bend {
+  double leastSupport = 0.0;        ///< h = |r n|: distance from the centre to the tangent plane
+  double greatestFoot = 0.0;        ///< |A n|
+  double greatestEquatorial = 0.0;  ///< h^2 at the same longitudes on the equator
+
+  /// Second derivative along an arc of normals whose direction v has v A v and |n A v| of at most that.
+  [[nodiscard]] Margin along(double square, double product, double greatestRadius) const {
+    const double h = leastSupport;
+    const double tilt = product / (h * h);
+    const double reach = std::sqrt(square) / h;
+    return {2.0 * greatestRadius * reach * tilt + greatestFoot / h * (reach * reach + 3.0 * tilt * tilt),
+            2.0 * reach * tilt + reach * reach + 3.0 * tilt * tilt};
+  }
+};
+
+/// At most |f_uu| du^2 / 8 + |f_vv| dv^2 / 8.
 ///
 /// On the ellipsoid P(n) = A n / h, h = |r n|, A = diag(r^2), is homogeneous of degree 0 in the normal n. For unit v at
-/// right angles to n, n A v <= e = (r_max^2 - r_min^2) / 2, so |P''[v, v]| <= 2 r_max^2 e / h^3 + r_max^3 / h^2 +
-/// 3 r_max e^2 / h^4. Along a meridian n'' = -n adds nothing; along a parallel n'' is cos(latitude) long and adds the
-/// largest radius of curvature, r_max^2 / r_min, times that. The height adds itself.
-double provedMargin(const Tiling& tiling, const TileIndex& index, double height) {
+/// right angles to n, P''[v, v] = -2 A v (n A v) / h^3 - A n (v A v) / h^3 + 3 A n (n A v)^2 / h^5. Along a meridian
+/// n'' = -n adds nothing; along a parallel n'' is cos(latitude) long and adds P'[n'']. The height adds itself. In
+/// scaled space A v and A n become r v and r n, of length sqrt(v A v) and h. Everything is bounded within the tile: on
+/// a flattened body the bends of its face and of its rim differ by powers of the radii's ratio.
+Margin provedMargin(const Tiling& tiling, const TileIndex& index, double height) {
+  const glm::dvec3 squares = tiling.ellipsoid().radii() * tiling.ellipsoid().radii();
   const double most = tiling.ellipsoid().maximumRadius();
-  const double least = tiling.ellipsoid().minimumRadius();
-  const double eccentric = 0.5 * (most - least) * (most + least);
-  const double bend = 2.0 * most * most * eccentric / (least * least * least) + most * most * most / (least * least) +
-                      3.0 * most * eccentric * eccentric / (least * least * least * least);
   const GeodeticPosition first = tiling.geodetic(index, {0.0, 0.0});
   const GeodeticPosition last = tiling.geodetic(index, {1.0, 1.0});
   const double latitudes = std::abs(last.latitude - first.latitude);
   const double longitudes = std::abs(last.longitude - first.longitude);
-  const bool overEquator = first.latitude * last.latitude < 0.0;
-  const double cosine = overEquator ? 1.0 : std::cos(std::min(std::abs(first.latitude), std::abs(last.latitude)));
-  const double alongMeridian = bend + height;
-  const double alongParallel = cosine * (cosine * bend + most * most / least + height);
-  return (latitudes * latitudes * alongMeridian + longitudes * longitudes * alongParallel) / (8.0 * cellsSquared);
+  const Arc north(first.latitude, last.latitude);
+  const Arc east(first.longitude, last.longitude);
+  const double cosine = std::sqrt(north.extremes[0].cosine);
+
+  Bend bend;
+  bend.leastSupport = most * most;
+  double alongMeridian = 0.0;  // v A v there
+  double alongParallel = 0.0;
+  double unlike = 0.0;  // of the axis' square and the equator's
+  for (const Squares& y : east.extremes) {
+    const double equatorial = squares.x * y.cosine + squares.y * y.sine;
+    const double equatorialFoot = squares.x * squares.x * y.cosine + squares.y * squares.y * y.sine;
+    bend.greatestEquatorial = std::max(bend.greatestEquatorial, equatorial);
+    alongParallel = std::max(alongParallel, squares.x * y.sine + squares.y * y.cosine);
+    unlike = std::max(unlike, std::abs(squares.z - equatorial));
+    for (const Squares& z : north.extremes) {
+      bend.leastSupport = std::min(bend.leastSupport, equatorial * z.cosine + squares.z * z.sine);
+      bend.greatestFoot = std::max(bend.greatestFoot, equatorialFoot * z.cosine + squares.z * squares.z * z.sine);
+      alongMeridian = std::max(alongMeridian, equatorial * z.sine + squares.z * z.cosine);
+    }
+  }
+  bend.leastSupport = std::sqrt(bend.leastSupport);
+  bend.greatestFoot = std::sqrt(bend.greatestFoot);
+  const Margin meridian = bend.along(alongMeridian, unlike * north.product, most);
+  const Margin parallel = bend.along(alongParallel, cosine * std::abs(squares.y - squares.x) * east.product, most);
+  const double turn = std::sqrt(bend.greatestEquatorial) / bend.leastSupport;
+  const double scaledHeight = height / tiling.ellipsoid().minimumRadius();
+  const auto sum = [&](double alongLatitude, double alongLongitude) {
+    return (latitudes * latitudes * alongLatitude + longitudes * longitudes * cosine * alongLongitude) /
+           (8.0 * cellsSquared);
+  };
+  return {sum(meridian.metres + height, cosine * parallel.metres + most * turn + height),
+          sum(meridian.scaled + scaledHeight, cosine * parallel.scaled + turn + scaledHeight)};
 }
 
-double measuredMargin(const Samples& samples, const Ellipsoid& ellipsoid, double height) {
+Margin measuredMargin(const Samples& samples, const Ellipsoid& ellipsoid, double height) {
   double across = 0.0;
   double down = 0.0;
   for (int i = 0; i < side; ++i) {
@@ -80,7 +159,8 @@ double measuredMargin(const Samples& samples, const Ellipsoid& ellipsoid, double
       down = std::max(down, bend(Samples::at(i, j - 1), Samples::at(i, j), Samples::at(i, j + 1)));
     }
   }
-  return 2.0 * (across + down) / 8.0 * (1.0 + height / ellipsoid.minimumRadius());
+  const double metres = 2.0 * (across + down) / 8.0 * (1.0 + height / ellipsoid.minimumRadius());
+  return {metres, metres / ellipsoid.minimumRadius()};
 }
 
 OrientedBox boxAround(const Samples& samples, const HeightRange& heights, double margin) {
@@ -110,7 +190,7 @@ OrientedBox boxAround(const Samples& samples, const HeightRange& heights, double
   return box;
 }
 
-ScaledCap capAround(const Samples& samples, const glm::dvec3& radii, const HeightRange& heights, double margin) {
+ScaledCap capAround(const Samples& samples, const glm::dvec3& radii, const HeightRange& heights, double scaledMargin) {
   ScaledCap cap;
   constexpr int middle = cells / 2;
   cap.direction = glm::normalize(samples.points[Samples::at(middle, middle)] / radii);
@@ -127,7 +207,6 @@ ScaledCap capAround(const Samples& samples, const glm::dvec3& radii, const Heigh
           std::max(angle, std::atan2(glm::length(glm::cross(cap.direction, point)), glm::dot(cap.direction, point)));
     }
   }
-  const double scaledMargin = margin / std::min({radii.x, radii.y, radii.z});
   // Cone and ball are convex, so they hold what lies between the samples too; the margin widens both. Between samples
   // a surface may come nearer to the centre than any of them, by no more than the chords' depth, cos(angle).
   const double nearest = least * std::cos(std::min(angle, 1.5)) - scaledMargin;
@@ -164,14 +243,14 @@ ChunkBounds chunkBounds(const Tiling& tiling, const TileIndex& index, const Heig
   const Samples samples = sample(tiling, index);
   const Ellipsoid& ellipsoid = tiling.ellipsoid();
   const double height = std::max(std::abs(range.minimum), std::abs(range.maximum));
-  const double bend =
+  const Margin bend =
       tiling.isSeparable() ? provedMargin(tiling, index, height) : measuredMargin(samples, ellipsoid, height);
   // Rounding of positions in model space.
-  const double margin = bend + 1e-15 * 8.0 * (ellipsoid.maximumRadius() + height);
+  const double rounding = 1e-15 * 8.0 * (ellipsoid.maximumRadius() + height);
 
   ChunkBounds bounds;
-  bounds.box = boxAround(samples, range, margin);
-  bounds.cap = capAround(samples, ellipsoid.radii(), range, margin);
+  bounds.box = boxAround(samples, range, bend.metres + rounding);
+  bounds.cap = capAround(samples, ellipsoid.radii(), range, bend.scaled + rounding / ellipsoid.minimumRadius());
   const double north = edgeLength(samples, false, 0);
   const double south = edgeLength(samples, false, cells);
   const double west = edgeLength(samples, true, 0);

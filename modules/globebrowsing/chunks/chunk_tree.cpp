@@ -34,6 +34,14 @@ constexpr std::uint64_t patience = 120;
 /// Of the inner nodes without a surface, only these levels are asked for, as a picture to start with.
 constexpr int stopgapLevels = 3;
 
+/// By how much coarsening grows when a selection is too large, and falls when one has become small; and the share of
+/// the most tiles, and the frames between, at which it falls. Half the error needs two to four times the tiles.
+constexpr double coarser = 4.0;
+constexpr double finer = 0.5;
+constexpr std::uint32_t small = 16;
+constexpr std::uint64_t finerEvery = 4;
+constexpr double coarsest = 1e60;
+
 /// Priorities: roots, then what is needed now, then what may be needed soon. Within a class by urgency.
 constexpr double rootPriority = 3.0;
 constexpr double neededPriority = 1.0;
@@ -72,6 +80,10 @@ class ChunkTree::Implementation {
   [[nodiscard]] const SelectionFigures& figures() const { return figures_; }
 
  private:
+  /// Selects from all roots.
+  void selectOnce();
+  void coarsen() { coarsening_ = std::min(coarsest, coarser * coarsening_); }
+  [[nodiscard]] bool isSpent() const { return figures_.visited >= settings_.mostVisited; }
   /// Selects what covers the node; false when something in it cannot be drawn.
   bool visit(NodeNumber number);
   bool visitTarget(NodeNumber number, const Demand& demand);
@@ -98,7 +110,8 @@ class ChunkTree::Implementation {
   void truncate(std::size_t count);
 
   void finish();
-  void reclaim(NodeNumber number);
+  /// Gives back what was not visited for more than that many frames.
+  void reclaim(NodeNumber number, std::uint64_t frames);
   void giveChildren(ChunkNode& node);
 
   const Tiling& tiling_;
@@ -115,6 +128,8 @@ class ChunkTree::Implementation {
   SkirtFitter skirts_;
   SelectionFigures figures_;
   bool provisional_ = false;  ///< finer or coarser chunks than wanted are drawn
+  double coarsening_ = 1.0;
+  bool cutShort_ = false;  ///< tiles that should have split did not, for too many had been visited
 };
 
 void ChunkTree::Implementation::clear() {
@@ -126,6 +141,7 @@ void ChunkTree::Implementation::clear() {
   selected_.clear();
   numbers_.clear();
   figures_ = {};
+  coarsening_ = 1.0;
 }
 
 void ChunkTree::Implementation::select(std::span<const SelectionView> views, const SelectionSettings& settings,
@@ -133,22 +149,38 @@ void ChunkTree::Implementation::select(std::span<const SelectionView> views, con
   ++frame_;
   settings_ = inRange(settings);
   residency_ = &residency;
-  figures_ = {};
-  provisional_ = false;
-  truncate(0);
+  if (coarsening_ > 1.0 && frame_ % finerEvery == 0 && figures_.visited < settings_.mostVisited / small) {
+    coarsening_ = std::max(1.0, finer * coarsening_);
+  }
   views_.prepare(views, settings_, tiling_.ellipsoid().radii());
   for (const NodeNumber root : roots_) {
     residency.want(pool_[root].index, 0, rootPriority);
     keep(pool_[root]);
   }
+  selectOnce();
+  if (cutShort_) {
+    coarsen();
+    selectOnce();
+  }
+  finish();
+  if (cutShort_) {
+    coarsen();
+  }
+}
+
+void ChunkTree::Implementation::selectOnce() {
+  figures_ = {};
+  figures_.coarsening = coarsening_;
+  provisional_ = false;
+  cutShort_ = false;
+  truncate(0);
   bool covered = true;
   if (!views_.empty()) {
     for (const NodeNumber root : roots_) {
       covered = visit(root) && covered;
     }
   }
-  figures_.atTarget = covered && figures_.missing == 0 && !provisional_;
-  finish();
+  figures_.atTarget = covered && figures_.missing == 0 && !provisional_ && !cutShort_;
 }
 
 void ChunkTree::Implementation::updateBounds(ChunkNode& node) {
@@ -170,10 +202,11 @@ Refinement ChunkTree::Implementation::refinement(const ChunkNode& node, const De
   if (node.index.level >= settings_.deepestLevel) {
     return wanted;
   }
-  wanted.colours = demand.urgency > 1.0 &&
+  wanted.colours = demand.urgency > coarsening_ &&
                    (!evaluatorOf(settings_.evaluator).limitedByData() || residency_->hasFinerColours(node.index));
-  wanted.surface = node.bounds.edgeLength * floatPrecision * demand.pixelsPerMetre > maximumPrecisionPixels ||
-                   errorPixels(node, splitStep(node.index.level), demand) > settings_.maximumErrorPixels;
+  wanted.surface =
+      node.bounds.edgeLength * floatPrecision * demand.pixelsPerMetre > coarsening_ * maximumPrecisionPixels ||
+      errorPixels(node, splitStep(node.index.level), demand) > coarsening_ * settings_.maximumErrorPixels;
   return wanted;
 }
 
@@ -228,7 +261,11 @@ bool ChunkTree::Implementation::visit(NodeNumber number) {
     return true;
   }
   node.errors = residency_->surfaceErrors(node.index);
-  const Refinement wanted = refinement(node, demand);
+  Refinement wanted = refinement(node, demand);
+  if (isSpent() && (wanted.colours || wanted.surface)) {
+    cutShort_ = true;
+    wanted = {};
+  }
   return wanted.colours || wanted.surface ? visitChildren(number, demand, wanted.colours) : visitTarget(number, demand);
 }
 
@@ -286,7 +323,7 @@ bool ChunkTree::Implementation::visitChildren(NodeNumber number, const Demand& d
 
 bool ChunkTree::Implementation::coverByFiner(NodeNumber number, bool drawnOnly) {
   ChunkNode& node = pool_[number];
-  if (node.childCount == 0) {
+  if (node.childCount == 0 || isSpent()) {
     return false;
   }
   const std::size_t before = selected_.size();
@@ -370,21 +407,22 @@ void ChunkTree::Implementation::finish() {
     return a.distance != b.distance ? a.distance < b.distance : a.index < b.index;
   });
   constexpr std::uint64_t reclaimEvery = 32;
-  if (frame_ % reclaimEvery == 0) {
+  const bool isLarge = pool_.used() > 4 * settings_.mostVisited;
+  if (frame_ % reclaimEvery == 0 || isLarge) {
     for (const NodeNumber root : roots_) {
-      reclaim(root);
+      reclaim(root, isLarge ? 1 : patience);
     }
   }
   figures_.nodes = pool_.used();
 }
 
-void ChunkTree::Implementation::reclaim(NodeNumber number) {
+void ChunkTree::Implementation::reclaim(NodeNumber number, std::uint64_t frames) {
   ChunkNode& node = pool_[number];
   bool inUse = false;
   for (int i = 0; i < node.childCount; ++i) {
     const NodeNumber child = node.children[static_cast<std::size_t>(i)];
-    reclaim(child);
-    inUse = inUse || pool_[child].childCount > 0 || pool_[child].visitedFrame + patience >= frame_;
+    reclaim(child, frames);
+    inUse = inUse || pool_[child].childCount > 0 || pool_[child].visitedFrame + frames >= frame_;
   }
   if (!inUse) {
     giveChildren(node);

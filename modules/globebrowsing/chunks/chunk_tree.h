@@ -33,6 +33,10 @@ namespace meridian::globebrowsing {
 /// kept, and with settings.prefetch also wanted, after everything needed now. Tiles that are culled or split by heights
 /// of before have their shapes made anew, after everything needed now as well.
 ///
+/// However many chunks the settings ask for, a selection ends: past settings.mostVisited tiles none splits. Then all
+/// errors allowed are multiplied (figures().coarsening) until the whole selection stays below that, within a few
+/// frames; until it does it is not at its target. They fall again when there is room.
+///
 /// A steady selection (nothing new is visited) allocates nothing. Nodes that are not visited for a while are reclaimed.
 /// One thread at a time.
 class ChunkTree {

@@ -31,6 +31,9 @@ struct SelectionSettings {
   /// Whether tiles beside the picture are asked for too, last of all, so that turning round finds them.
   bool prefetch = true;
   int deepestLevel = 30;  ///< 0 draws the roots only
+  /// Tiles that one pass may look at. There are at most 2048 shapes in memory; views of films and domes look at some
+  /// thousands of tiles. Only data or bodies that are out of all proportion ask for more.
+  std::uint32_t mostVisited = 1U << 14U;
 };
 
 /// A chunk to draw.
@@ -52,7 +55,8 @@ struct SelectionFigures {
   std::uint32_t culledFrustum = 0;
   std::uint32_t culledHorizon = 0;
   std::uint32_t kicked = 0;   ///< chunks drawn in place of replacements that are incomplete
-  bool atTarget = false;      ///< every chunk drawn is the one that the settings ask for, and complete
+  bool atTarget = false;      ///< every chunk drawn is the one that settings and coarsening ask for, and complete
+  double coarsening = 1.0;    ///< errors allowed are that many times those of the settings: more than 1 at mostVisited
   std::uint32_t missing = 0;  ///< target chunks that are not complete
 };
 

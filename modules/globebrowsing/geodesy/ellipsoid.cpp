@@ -113,9 +113,10 @@ Foot footOf(const glm::dvec3& radii, const glm::dvec3& position) {
 
 Result<Ellipsoid> Ellipsoid::fromRadii(const glm::dvec3& radii) {
   for (int i = 0; i < 3; ++i) {
-    if (!std::isfinite(radii[i]) || radii[i] <= 0.0) {
-      return failure(fmt::format("the radii {}, {}, {} are no ellipsoid's", radii.x, radii.y, radii.z), {},
-                     "give three lengths in metres, each greater than 0");
+    if (!(radii[i] >= leastRadius && radii[i] <= greatestRadius)) {
+      return failure(
+          fmt::format("the radii {}, {}, {} are no ellipsoid's that can be drawn", radii.x, radii.y, radii.z), {},
+          fmt::format("give three lengths in metres, each between {} and {}", leastRadius, greatestRadius));
     }
   }
   return Ellipsoid(radii);

@@ -1,11 +1,20 @@
 #pragma once
 
+#include <limits>
+
 #include <glm/vec3.hpp>
 
 #include "host/api/error.h"
 #include "host/api/geodetic_position.h"
 
 namespace meridian::globebrowsing {
+
+/// Heights in metres, both ends included. Not-a-number is in no range.
+struct HeightLimits {
+  double least = -std::numeric_limits<double>::infinity();
+  double greatest = std::numeric_limits<double>::infinity();
+  [[nodiscard]] bool hold(double height) const { return height >= least && height <= greatest; }
+};
 
 /// A reference ellipsoid with any three semi-axes. Model space: metres, origin at the centre, +z the north pole, +x the
 /// prime meridian. Geodetic latitude and longitude are the angles of the outward surface normal, on triaxial bodies
@@ -17,7 +26,9 @@ namespace meridian::globebrowsing {
 /// longitude is 0; at the centre the answer is the end of the shortest axis; never not-a-number for finite input.
 class Ellipsoid {
  public:
-  /// Errors: a semi-axis that is not finite or not positive.
+  static constexpr double leastRadius = 1e-3;     ///< metres
+  static constexpr double greatestRadius = 1e15;  ///< metres; squares of squares of it are still numbers
+  /// Errors: a semi-axis that is not between these.
   [[nodiscard]] static Result<Ellipsoid> fromRadii(const glm::dvec3& radii);
 
   [[nodiscard]] const glm::dvec3& radii() const { return radii_; }
@@ -26,6 +37,12 @@ class Ellipsoid {
   [[nodiscard]] bool isSphere() const { return radii_.x == radii_.y && radii_.x == radii_.z; }
   /// Rotationally symmetric about z (a sphere is one too).
   [[nodiscard]] bool isSpheroid() const { return radii_.x == radii_.y; }
+
+  /// What may be a height above it: from the smallest radius below (a sphere's centre) to twice that above. The relief
+  /// of Mars is 0.6 % of its radius, that of Vesta 10 %, and Kleopatra, as long as four times its width, reaches 1.3
+  /// radii above a sphere of its mean radius. Beyond are values without data that nobody declared, wrong units, and
+  /// heights stored as radii by a wrong scale.
+  [[nodiscard]] HeightLimits heightLimits() const { return {-minimumRadius(), 2.0 * minimumRadius()}; }
 
   [[nodiscard]] glm::dvec3 normal(double latitude, double longitude) const;
   [[nodiscard]] glm::dvec3 cartesian(const GeodeticPosition& position) const;

@@ -40,7 +40,8 @@ class HeightCompositionJob final : public TileJob {
       heights.push_back(
           {&static_cast<const HeightTile&>(*part.tile).pixels(), part.settings, part.opacity, part.within});
     }
-    return target_.make(*target_.tiling, target_.index, composeHeights(heights, target_.layout).metres);
+    const HeightLimits limits = target_.tiling->ellipsoid().heightLimits();
+    return target_.make(*target_.tiling, target_.index, composeHeights(heights, target_.layout, limits).metres);
   }
 
  private:

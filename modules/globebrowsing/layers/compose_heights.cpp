@@ -55,7 +55,8 @@ void layOver(std::vector<double>& heights, const HeightPart& part, const TileLay
 
 }  // namespace
 
-ComposedHeights composeHeights(std::span<const HeightPart> parts, const TileLayout& layout) {
+ComposedHeights composeHeights(std::span<const HeightPart> parts, const TileLayout& layout,
+                               const HeightLimits& limits) {
   const auto size = static_cast<std::size_t>(layout.size());
   std::vector<double> heights(size * size, 0.0);
   for (const HeightPart& part : parts) {
@@ -65,9 +66,9 @@ ComposedHeights composeHeights(std::span<const HeightPart> parts, const TileLayo
   }
   ComposedHeights composed;
   composed.metres.resize(heights.size());
-  std::transform(heights.begin(), heights.end(), composed.metres.begin(), [](double height) {
+  std::transform(heights.begin(), heights.end(), composed.metres.begin(), [&](double height) {
     constexpr double largest = std::numeric_limits<float>::max();
-    return static_cast<float>(std::clamp(height, -largest, largest));
+    return static_cast<float>(std::clamp(height, std::max(limits.least, -largest), std::min(limits.greatest, largest)));
   });
   const auto border = static_cast<std::size_t>(layout.border);
   composed.minimum = std::numeric_limits<float>::max();

@@ -27,7 +27,9 @@ struct ComposedHeights {
 
 /// Lays the parts over each other, lowest first: height = mix(below, settings(metres), opacity), where below starts at
 /// 0 (the ellipsoid); a part that is not a number there shows what is below. In double; an ancestor's bilinearly.
-/// Deterministic per sample, so shared nodes that came in equal go out equal.
-[[nodiscard]] ComposedHeights composeHeights(std::span<const HeightPart> parts, const TileLayout& layout);
+/// What settings raise beyond the limits is drawn at them. Deterministic per sample, so shared nodes that came in equal
+/// go out equal.
+[[nodiscard]] ComposedHeights composeHeights(std::span<const HeightPart> parts, const TileLayout& layout,
+                                             const HeightLimits& limits = {});
 
 }  // namespace meridian::globebrowsing

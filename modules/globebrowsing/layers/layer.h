@@ -31,6 +31,7 @@ struct LayerServices {
   WorkerPool* workers = nullptr;
   TileStreamer* streamer = nullptr;
   std::shared_ptr<SourceTileStore> sourceTiles{};  ///< of map services
+  HeightLimits heightLimits{};                     ///< of the globe
   TokenFolder tokenFolder{};  ///< of the path tokens in tables and properties; empty: there are none
 };
 

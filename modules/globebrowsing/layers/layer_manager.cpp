@@ -221,6 +221,7 @@ Result<Layer*> LayerManager::addLayer(std::string_view groupName, const Provider
   ProviderRequest served = request;
   served.sourceTiles = services_.sourceTiles;
   served.table = withTokensReplaced(served.table, services_.tokenFolder);
+  served.heightLimits = services_.heightLimits;
   return readLayer(served, named->group, named->blendMode).and_then([&](LayerDescription description) {
     return group(named->group).add(std::move(description), services_);
   });

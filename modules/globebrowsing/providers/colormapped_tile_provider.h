@@ -17,6 +17,7 @@ class ColormappedTileProvider final : public TileProvider {
 
   [[nodiscard]] Result<void> check() const override { return values_->check(); }
   [[nodiscard]] std::optional<Error> lastFailure() const override { return values_->lastFailure(); }
+  [[nodiscard]] std::optional<Error> flaw() const override { return values_->flaw(); }
 
  private:
   class Task;

@@ -149,6 +149,7 @@ Result<std::shared_ptr<DefaultTileProvider>> DefaultTileProvider::makeUnopened(c
   description.heightScale = numberAt(request.table, "HeightScale");
   description.heightOffset = numberAt(request.table, "HeightOffset");
   description.heightDatum = numberAt(request.table, "HeightDatum");
+  description.heightLimits = request.heightLimits;
   return std::make_shared<DefaultTileProvider>(std::move(path), std::move(description), std::move(*tiles), request);
 }
 
@@ -207,7 +208,8 @@ Result<std::shared_ptr<PixelSource>> DefaultTileProvider::openSource() {
     }
     if (*service) {
       tellNotes();
-      return TiledServiceSource::make(withHeights(std::move(**service), description_, tiles_), sourceTiles_);
+      return TiledServiceSource::make(withHeights(std::move(**service), description_, tiles_), sourceTiles_,
+                                      description_.heightLimits);
     }
   }
   if (!tiles_.isEmpty()) {

@@ -39,6 +39,9 @@ class DefaultTileProvider final : public TileProvider {
 
   [[nodiscard]] Result<void> check() const override;
   [[nodiscard]] std::optional<Error> lastFailure() const override;
+  [[nodiscard]] std::optional<Error> flaw() const override {
+    return state() == State::Ready ? source_->flaw() : std::nullopt;
+  }
   [[nodiscard]] std::string_view attribution() const override {
     return state() == State::Ready ? source_->attribution() : std::string_view();
   }

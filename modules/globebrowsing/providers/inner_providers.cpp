@@ -11,7 +11,7 @@ namespace meridian::globebrowsing {
 ProviderRequest innerRequest(const ProviderRequest& outer, std::string_view key, const Value& table) {
   std::string path = outer.path;
   path.append(path.empty() ? "" : ".").append(key);
-  return {table, outer.where, std::move(path), outer.folder, outer.sourceTiles, outer.share};
+  return {table, outer.where, std::move(path), outer.folder, outer.sourceTiles, outer.share, outer.heightLimits};
 }
 
 Result<ProviderPointer> makeInner(const ProviderRequest& inner) {
@@ -32,7 +32,7 @@ ProviderRequest rasterRequest(const ProviderRequest& outer, std::string filePath
   Table table = outer.table.isTable() ? *outer.table.table() : Table{};
   table.fields["Type"] = std::string(name(LayerType::DefaultTileProvider));
   table.fields["FilePath"] = std::move(filePath);
-  return {std::move(table), outer.where, outer.path, outer.folder, outer.sourceTiles, outer.share};
+  return {std::move(table), outer.where, outer.path, outer.folder, outer.sourceTiles, outer.share, outer.heightLimits};
 }
 
 const Value& valueAt(const Value& table, std::string_view key) {
@@ -54,6 +54,15 @@ std::optional<Error> lastFailureOf(std::span<const ProviderPointer> providers) {
   for (const ProviderPointer& provider : providers) {
     if (std::optional<Error> failure = provider->lastFailure()) {
       return failure;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> flawOf(std::span<const ProviderPointer> providers) {
+  for (const ProviderPointer& provider : providers) {
+    if (std::optional<Error> flaw = provider->flaw()) {
+      return flaw;
     }
   }
   return std::nullopt;

@@ -30,6 +30,7 @@ using ProviderPointer = std::shared_ptr<TileProvider>;
 [[nodiscard]] Result<void> checkAll(std::span<const ProviderPointer> providers);
 /// The first that there is of any.
 [[nodiscard]] std::optional<Error> lastFailureOf(std::span<const ProviderPointer> providers);
+[[nodiscard]] std::optional<Error> flawOf(std::span<const ProviderPointer> providers);
 /// The first that there is of any, as TileProvider::attribution.
 [[nodiscard]] std::string_view attributionOf(std::span<const ProviderPointer> providers);
 /// Prepares them for being opened, one after the other, as TileProvider::prepare.

@@ -25,6 +25,7 @@ struct ProviderRequest {
   /// Where the tiles of map services come from; null where nothing is fetched (--validate).
   std::shared_ptr<SourceTileStore> sourceTiles{};
   std::shared_ptr<SeriesShare> share{};  ///< of the steps of a series; else null
+  HeightLimits heightLimits{};           ///< of the globe; heights beyond are no data
 };
 
 /// The place of a key for errors: "earth.asset:12: Renderable.Layers.ColorLayers.Blue.FilePath".

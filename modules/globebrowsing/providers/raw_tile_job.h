@@ -36,7 +36,7 @@ class RawTileJob final : public TileJob {
     };
     return task_ != nullptr ? task_->make(stop).map(published) : make(task_, stop).map(published);
   }
-  std::optional<Error> flaw() const override { return task_ != nullptr ? task_->flaw() : std::nullopt; }
+  std::optional<Error> flaw() const override { return task_ != nullptr ? task_->flaw() : provider_->flaw(); }
 
  private:
   void begin(std::unique_ptr<ColourTask>& task) { task = provider_->colourTask(*tiling_, index_); }

@@ -53,6 +53,8 @@ class TileProvider {
   [[nodiscard]] std::optional<Error> error() const;
   /// Of a Ready one whose data come from elsewhere: why some are not there yet, while they are tried again and again.
   [[nodiscard]] virtual std::optional<Error> lastFailure() const { return std::nullopt; }
+  /// Of a Ready one: what was found wrong with data that are shown all the same.
+  [[nodiscard]] virtual std::optional<Error> flaw() const { return std::nullopt; }
   /// Whom its data are to be credited to, as far as they say so themselves; empty unless Ready. Good as long as the
   /// provider.
   [[nodiscard]] virtual std::string_view attribution() const { return {}; }

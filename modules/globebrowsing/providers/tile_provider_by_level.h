@@ -19,6 +19,7 @@ class TileProviderByLevel final : public TileProvider, private TileSteps {
   [[nodiscard]] const TileSteps* steps() const override { return anySteps(providers_) ? this : nullptr; }
   [[nodiscard]] Result<void> check() const override { return checkAll(providers_); }
   [[nodiscard]] std::optional<Error> lastFailure() const override { return lastFailureOf(providers_); }
+  [[nodiscard]] std::optional<Error> flaw() const override { return flawOf(providers_); }
   [[nodiscard]] std::string_view attribution() const override { return attributionOf(providers_); }
 
  private:

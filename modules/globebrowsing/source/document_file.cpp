@@ -5,13 +5,19 @@
 #include <iterator>
 #include <system_error>
 
+#include "host/api/regular_file.h"
+
 namespace meridian::globebrowsing {
 
 Result<Fetched> readDocumentFile(const std::string& path) {
   std::error_code code;
-  const auto size = std::filesystem::file_size(path, code);
-  std::ifstream file(path, std::ios::binary);
-  if (code || !file || size > largestDocument) {
+  const bool isRegular = std::filesystem::is_regular_file(path, code);
+  const auto size = isRegular ? std::filesystem::file_size(path, code) : 0;
+  std::ifstream file;
+  if (isRegular && !code) {  // a pipe would wait for its other end
+    file.open(path, std::ios::binary);
+  }
+  if (!file.is_open() || size > largestDocument) {
     return failure("the description of the service cannot be read from that file", path,
                    "check the path and the permissions; at most 64 MiB are read");
   }
@@ -23,6 +29,9 @@ Result<Fetched> readDocumentFile(const std::string& path) {
 
 Result<std::string> readTextFile(const std::string& path, std::size_t mostBytes, const std::string& where,
                                  const std::string& remedy) {
+  if (auto regular = requireRegularFile(path, "the file", "check the path"); !regular) {
+    return tl::make_unexpected(std::move(regular.error()));
+  }
   std::ifstream file(path, std::ios::binary);
   std::string text(mostBytes + 1, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));

@@ -2,16 +2,30 @@
 
 #include <mutex>
 
+#include <cpl_conv.h>
 #include <cpl_error.h>
 #include <gdal_priv.h>
 
 namespace meridian::globebrowsing {
+
+namespace {
+
+/// The user's word, in the environment or a configuration file of GDAL's, goes first.
+void setUnlessSet(const char* key, const char* value) {
+  if (CPLGetConfigOption(key, nullptr) == nullptr) {
+    CPLSetConfigOption(key, value);
+  }
+}
+
+}  // namespace
 
 void initializeGdal() {
   static std::once_flag once;
   std::call_once(once, [] {
     GDALAllRegister();
     GDALSetCacheMax64(std::int64_t{64} << 20U);
+    // A picture that was cut short is an error and not grey where it ends.
+    setUnlessSet("GDAL_ERROR_ON_LIBJPEG_WARNING", "YES");
   });
 }
 

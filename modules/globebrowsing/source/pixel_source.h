@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <string_view>
 
 #include "globebrowsing/source/resample.h"
@@ -28,6 +29,8 @@ class PixelTask {
   /// Why something is missing in what make() gave: the rest is there.
   [[nodiscard]] virtual std::optional<Error> flaw() const = 0;
 };
+/// That a source has a height which its body cannot have, for flaw().
+[[nodiscard]] Error implausibleHeight(double metres, const HeightLimits& limits, const std::string& where);
 using ColourTask = PixelTask<ColourPixels>;
 using HeightTask = PixelTask<HeightPixels>;
 
@@ -58,6 +61,8 @@ class PixelSource {
   }
   /// Why data that were asked for are not there yet, where they are tried again and again.
   [[nodiscard]] virtual std::optional<Error> lastFailure() const { return std::nullopt; }
+  /// What was found wrong with data that are shown all the same, for as long as the source; the first of it.
+  [[nodiscard]] virtual std::optional<Error> flaw() const { return std::nullopt; }
   /// Whom the data themselves say they are to be credited to, on one line; good as long as the source.
   [[nodiscard]] virtual std::string_view attribution() const { return {}; }
 };

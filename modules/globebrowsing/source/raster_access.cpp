@@ -4,11 +4,15 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <optional>
+#include <system_error>
 
+#include <fmt/format.h>
 #include <gdal_priv.h>
 
 #include "globebrowsing/source/gdal_runtime.h"
+#include "globebrowsing/source/netcdf_length.h"
 #include "globebrowsing/source/service_text.h"
 
 namespace meridian::globebrowsing {
@@ -117,6 +121,7 @@ RasterAccess::~RasterAccess() = default;
 
 Result<void> RasterAccess::examine() {
   const GdalMessages messages;
+  checkLength();
   GDALDataset& dataset = pool_->idle.front()->dataset();
   levels_ = rasterLevels(dataset);
   for (const RasterLevel& level : levels_) {
@@ -193,10 +198,39 @@ Result<std::shared_ptr<RasterHandle>> RasterAccess::borrow() const {
   return std::shared_ptr<RasterHandle>(handle.release(), [pool = pool_](RasterHandle* returned) {
     std::unique_ptr<RasterHandle> owner(returned);
     const std::lock_guard lock(pool->mutex);
-    if (pool->idle.size() < pooledDatasets) {
+    if (!owner->isSpoiled() && pool->idle.size() < pooledDatasets) {
       pool->idle.push_back(std::move(owner));
     }
   });
+}
+
+std::optional<Error> RasterAccess::flaw() const {
+  const std::lock_guard lock(flawMutex_);
+  return flaw_;
+}
+
+void RasterAccess::keepFlaw(const ReadNotes& notes) const {
+  const std::lock_guard lock(flawMutex_);
+  if (!flaw_ && notes.implausible) {
+    flaw_ = implausibleHeight(*notes.implausible, heightRule_.limits, pyramid_.where);
+  }
+  if (!flaw_ && !notes.warning.empty()) {
+    flaw_ = Error{"GDAL warned of the raster while it was read: " + notes.warning, pyramid_.where,
+                  "check that the file is complete"};
+  }
+}
+
+void RasterAccess::checkLength() const {
+  std::error_code code;
+  const std::uintmax_t length = std::filesystem::is_regular_file(description_.path, code)
+                                    ? std::filesystem::file_size(description_.path, code)
+                                    : 0;
+  const std::optional<std::uint64_t> needed = length > 0 ? classicNetcdfLength(description_.path) : std::nullopt;
+  if (needed && !code && length < *needed) {
+    const std::lock_guard lock(flawMutex_);
+    flaw_ = Error{fmt::format("the file ends after {} of {} bytes; what is missing reads as zeros", length, *needed),
+                  pyramid_.where, "get the whole file"};
+  }
 }
 
 bool RasterAccess::isKept(std::size_t level, std::size_t pixelBytes) const {
@@ -242,9 +276,12 @@ Result<void> RasterAccess::readStrips(RasterHandle& handle, const RasterLevel& l
     Pixel* target = out + row * stride;
     strip.resize(isDirect ? 0 : static_cast<std::size_t>(columns) * static_cast<std::size_t>(request.rows()));
     Pixel* into = isDirect ? target : strip.data();
-    if (auto done = readPixels(handle.dataset(), rule(target), request, into, pyramid_.where); !done) {
+    ReadNotes notes;
+    if (auto done = readPixels(handle.dataset(), rule(target), request, into, pyramid_.where, notes); !done) {
+      handle.spoil();
       return done;
     }
+    keepFlaw(notes);
     for (int r = 0; r < rows && !isDirect; ++r) {
       const Pixel* from = strip.data() + static_cast<std::ptrdiff_t>(r) * factor * columns;
       reduce(from, columns, std::min(factor, request.rows() - r * factor), factor, target + r * stride);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -23,8 +24,12 @@ class RasterHandle {
   [[nodiscard]] GDALDataset& dataset() const { return *dataset_; }
   /// Null when the raster is in geographic coordinates.
   [[nodiscard]] const Projection* projection() const { return projection_.get(); }
+  /// After a failure: a decoder that has said once that its data end gives anything for the rest. It is not used again.
+  void spoil() { isSpoiled_ = true; }
+  [[nodiscard]] bool isSpoiled() const { return isSpoiled_; }
 
  private:
+  bool isSpoiled_ = false;
   GDALDataset* dataset_;
   std::unique_ptr<Projection> projection_;
 };
@@ -44,6 +49,8 @@ class RasterAccess {
   /// With a dataset that goes back to the pool when the reader is destroyed, which must be before the access is.
   [[nodiscard]] Result<std::unique_ptr<PixelReader>> reader() const;
 
+  [[nodiscard]] std::optional<Error> flaw() const;
+
   /// Bytes of pixels kept in memory.
   [[nodiscard]] std::size_t residentBytes() const;
 
@@ -61,6 +68,9 @@ class RasterAccess {
   /// The borrowed handle goes back to the pool when the pointer is destroyed.
   [[nodiscard]] Result<std::shared_ptr<RasterHandle>> borrow() const;
   [[nodiscard]] Result<void> prepareColours(GDALDataset& dataset) const;
+  void keepFlaw(const ReadNotes& notes) const;
+  /// Whether the file is there to its end, where its header tells.
+  void checkLength() const;
   [[nodiscard]] bool isKept(std::size_t level, std::size_t pixelBytes) const;
 
   template <class Pixel>
@@ -82,6 +92,8 @@ class RasterAccess {
   RasterInfo info_;
   std::vector<RasterLevel> levels_;  ///< of the pyramid's, where they come from
   HeightRule heightRule_;
+  mutable std::mutex flawMutex_;
+  mutable std::optional<Error> flaw_;
   mutable std::mutex colourRuleMutex_;
   mutable bool hasColourRule_ = false;
   mutable ColourRule colourRule_;

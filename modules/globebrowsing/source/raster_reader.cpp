@@ -158,6 +158,7 @@ HeightRule heightRule(GDALDataset& dataset, const RasterDescription& description
     datum = std::abs(rule.offset - radius) < 0.01 * radius ? radius : 0.0;
   }
   rule.offset -= description.heightDatum.value_or(datum);
+  rule.limits = description.heightLimits;
   return rule;
 }
 
@@ -284,18 +285,19 @@ bool readAlpha(GDALDataset& dataset, const ColourRule& rule, const ReadRequest& 
 }  // namespace
 
 Result<void> readPixels(GDALDataset& dataset, const ColourRule& rule, const ReadRequest& request, Rgba* out,
-                        const std::string& where) {
+                        const std::string& where, ReadNotes& notes) {
   const GdalMessages messages;
   const bool isDirect = rule.isByte && rule.palette.empty();
   const bool isRead = isDirect ? readBytes(dataset, rule, request, out) : readValues(dataset, rule, request, out);
   if (!isRead || !readAlpha(dataset, rule, request, out)) {
     return cannotRead(messages, where);
   }
+  notes.warning = messages.warning();
   return {};
 }
 
 Result<void> readPixels(GDALDataset& dataset, const HeightRule& rule, const ReadRequest& request, float* out,
-                        const std::string& where) {
+                        const std::string& where, ReadNotes& notes) {
   const GdalMessages messages;
   const BandReader reader(dataset, request);
   const std::size_t count = reader.count();
@@ -329,6 +331,13 @@ Result<void> readPixels(GDALDataset& dataset, const HeightRule& rule, const Read
       out[i] = mask[i] != 0 ? out[i] : none;
     }
   }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!std::isnan(out[i]) && !rule.limits.hold(out[i])) {
+      notes.implausible = notes.implausible.value_or(out[i]);
+      out[i] = none;
+    }
+  }
+  notes.warning = messages.warning();
   return {};
 }
 

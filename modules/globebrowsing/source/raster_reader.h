@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "globebrowsing/source/raster_source.h"
@@ -46,6 +47,13 @@ struct HeightRule {
   bool isSignedByte = false;  ///< bytes over 127 are negative
   bool isWide = false;        ///< values need a double
   bool hasMask = false;
+  HeightLimits limits{};  ///< metres; what is beyond has no data
+};
+
+/// What was found wrong while reading, beside errors.
+struct ReadNotes {
+  std::optional<double> implausible{};  ///< metres, beyond the limits
+  std::string warning{};                ///< of GDAL's
 };
 
 /// From the bands' descriptions; for samples without a natural range also from their statistics, which may read.
@@ -62,10 +70,10 @@ struct ReadRequest {
   [[nodiscard]] int rows() const { return (window.height - 1) / step + 1; }
 };
 
-/// Read into rows of request.columns() pixels.
+/// Read into rows of request.columns() pixels. Adds to the notes.
 [[nodiscard]] Result<void> readPixels(GDALDataset& dataset, const ColourRule& rule, const ReadRequest& request,
-                                      Rgba* out, const std::string& where);
+                                      Rgba* out, const std::string& where, ReadNotes& notes);
 [[nodiscard]] Result<void> readPixels(GDALDataset& dataset, const HeightRule& rule, const ReadRequest& request,
-                                      float* out, const std::string& where);
+                                      float* out, const std::string& where, ReadNotes& notes);
 
 }  // namespace meridian::globebrowsing

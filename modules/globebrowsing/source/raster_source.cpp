@@ -100,6 +100,10 @@ const RasterDescription& RasterSource::description() const {
   return access_->description();
 }
 
+std::optional<Error> RasterSource::flaw() const {
+  return access_->flaw();
+}
+
 std::size_t RasterSource::residentBytes() const {
   return access_->residentBytes();
 }

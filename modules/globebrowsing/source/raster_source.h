@@ -29,6 +29,8 @@ struct RasterDescription {
   std::optional<double> heightScale{};
   std::optional<double> heightOffset{};
   std::optional<double> heightDatum{};
+  /// Heights beyond are no data, and a flaw().
+  HeightLimits heightLimits{};
 };
 
 enum class SampleType { UInt8, Int8, UInt16, Int16, UInt32, Int32, UInt64, Int64, Float32, Float64 };
@@ -96,6 +98,7 @@ class RasterSource final : public PixelSource {
   [[nodiscard]] Result<HeightPixels> heights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
                                              std::stop_token stop) const override;
 
+  [[nodiscard]] std::optional<Error> flaw() const override;
   [[nodiscard]] std::string_view attribution() const override { return info().attribution; }
 
   /// Pixels kept in memory. Safe from any thread; grows as the raster is sampled, freed with the source.

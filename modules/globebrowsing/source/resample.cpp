@@ -5,11 +5,20 @@
 #include <cstring>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include "globebrowsing/source/polar_heights.h"
 #include "globebrowsing/source/raster_access.h"
 #include "globebrowsing/source/resample_parts.h"
 
 namespace meridian::globebrowsing {
+
+Error implausibleHeight(double metres, const HeightLimits& limits, const std::string& where) {
+  return {fmt::format("a height of {:.6g} m is taken for no data, as are all that are not between {:.6g} and {:.6g} m "
+                      "on this body",
+                      metres, limits.least, limits.greatest),
+          where, "declare the raster's nodata value, or set HeightScale, HeightOffset or HeightDatum"};
+}
 
 double nominalSpacing(const Tiling& tiling, const TileIndex& index, const TileLayout& layout) {
   // A root's height, halved with every level: taken from the root, so that rounding is the same for all tiles.

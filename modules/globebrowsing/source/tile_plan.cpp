@@ -1,6 +1,7 @@
 #include "globebrowsing/source/tile_plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -123,8 +124,8 @@ void TilePlan::addStandIns(PixelKind kind) {
   }
 }
 
-TileMosaic::TileMosaic(const ServicePyramid& pyramid, const PlannedTiles& tiles)
-    : pyramid_(pyramid), projection_(cloneOf(pyramid)), tiles_(tiles) {}
+TileMosaic::TileMosaic(const ServicePyramid& pyramid, const PlannedTiles& tiles, const HeightLimits& limits)
+    : pyramid_(pyramid), projection_(cloneOf(pyramid)), tiles_(tiles), limits_(limits) {}
 
 template <class Pixel>
 Result<void> TileMosaic::fill(const TilePart& part, const PlannedTile& planned, Pixel* out, std::ptrdiff_t stride,
@@ -187,8 +188,18 @@ Result<void> TileMosaic::fetch(std::size_t level, const UnboundedWindow& window,
 
 Result<void> TileMosaic::fetch(std::size_t level, const UnboundedWindow& window, float* out,
                                const std::stop_token& stop) {
-  std::fill_n(out, std::ptrdiff_t{1} * window.width * window.height, noHeight);
-  return assemble(level, window, out, stop);
+  const std::ptrdiff_t count = std::ptrdiff_t{1} * window.width * window.height;
+  std::fill_n(out, count, noHeight);
+  auto done = assemble(level, window, out, stop);
+  std::replace_if(
+      out, out + count,
+      [this](float metres) {
+        const bool isWild = !std::isnan(metres) && !limits_.hold(metres);
+        implausible_ = isWild && !implausible_ ? metres : implausible_;
+        return isWild;
+      },
+      noHeight);
+  return done;
 }
 
 }  // namespace meridian::globebrowsing

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "globebrowsing/source/service_pyramid.h"
 #include "globebrowsing/source/source_tile.h"
@@ -58,7 +59,7 @@ class TilePlan final : public PixelReader {
 class TileMosaic final : public PixelReader {
  public:
   /// Both outlive the mosaic.
-  TileMosaic(const ServicePyramid& pyramid, const PlannedTiles& tiles);
+  TileMosaic(const ServicePyramid& pyramid, const PlannedTiles& tiles, const HeightLimits& limits = {});
 
   [[nodiscard]] const Pyramid& pyramid() const override { return pyramid_.pyramid(); }
   [[nodiscard]] const Projection* projection() const override { return projection_.get(); }
@@ -66,6 +67,8 @@ class TileMosaic final : public PixelReader {
                                    const std::stop_token& stop) override;
   [[nodiscard]] Result<void> fetch(std::size_t level, const UnboundedWindow& window, float* out,
                                    const std::stop_token& stop) override;
+  /// A height that was read and is beyond the limits; such have no data.
+  [[nodiscard]] const std::optional<double>& implausible() const { return implausible_; }
 
  private:
   template <class Pixel>
@@ -77,6 +80,8 @@ class TileMosaic final : public PixelReader {
   const ServicePyramid& pyramid_;
   std::unique_ptr<Projection> projection_;
   const PlannedTiles& tiles_;
+  HeightLimits limits_;
+  std::optional<double> implausible_;
 };
 
 }  // namespace meridian::globebrowsing

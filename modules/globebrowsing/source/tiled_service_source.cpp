@@ -72,8 +72,12 @@ class ServiceTask final : public PixelTask<Pixels> {
       nothing.size = tile_.layout.size();
       return flaw_ ? Result<Pixels>(tl::make_unexpected(*flaw_)) : nothing;
     }
-    TileMosaic mosaic(source_.pyramid(), plan_.tiles());
-    return Kind<Pixels>::read(mosaic, tile_, stop);
+    TileMosaic mosaic(source_.pyramid(), plan_.tiles(), source_.heightLimits());
+    auto pixels = Kind<Pixels>::read(mosaic, tile_, stop);
+    if (mosaic.implausible() && !flaw_) {
+      flaw_ = implausibleHeight(*mosaic.implausible(), source_.heightLimits(), source_.service().where);
+    }
+    return pixels;
   }
 
   std::optional<Error> flaw() const override { return flaw_; }
@@ -125,7 +129,8 @@ tl::unexpected<Error> notAtOnce(const TileService& service) {
 }  // namespace
 
 Result<std::shared_ptr<TiledServiceSource>> TiledServiceSource::make(TileService service,
-                                                                     std::shared_ptr<SourceTileStore> store) {
+                                                                     std::shared_ptr<SourceTileStore> store,
+                                                                     const HeightLimits& limits) {
   if (!service.url) {
     return failure("the tile service has no addresses", service.where, "give the address of its tiles");
   }
@@ -134,7 +139,7 @@ Result<std::shared_ptr<TiledServiceSource>> TiledServiceSource::make(TileService
     return tl::make_unexpected(pyramid.error());
   }
   return std::shared_ptr<TiledServiceSource>(
-      new TiledServiceSource(std::move(service), std::move(*pyramid), std::move(store)));
+      new TiledServiceSource(std::move(service), std::move(*pyramid), std::move(store), limits));
 }
 
 bool TiledServiceSource::overlaps(const Tiling& tiling, const TileIndex& index) const {

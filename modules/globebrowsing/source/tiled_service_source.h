@@ -16,10 +16,12 @@ namespace meridian::globebrowsing {
 /// flaw; if nothing else is there either, the globe's tile fails.
 class TiledServiceSource final : public PixelSource {
  public:
-  /// Errors: what ServicePyramid::of says, no address.
+  /// Heights beyond the limits are no data, and a flaw of the tile. Errors: what ServicePyramid::of says, no address.
   [[nodiscard]] static Result<std::shared_ptr<TiledServiceSource>> make(TileService service,
-                                                                        std::shared_ptr<SourceTileStore> store);
+                                                                        std::shared_ptr<SourceTileStore> store,
+                                                                        const HeightLimits& limits = {});
 
+  [[nodiscard]] const HeightLimits& heightLimits() const { return limits_; }
   [[nodiscard]] const TileService& service() const { return *service_; }
   [[nodiscard]] const ServicePyramid& pyramid() const { return pyramid_; }
   [[nodiscard]] const std::shared_ptr<const TileService>& sharedService() const { return service_; }
@@ -41,14 +43,17 @@ class TiledServiceSource final : public PixelSource {
                                                        const TileLayout& layout) const override;
 
  private:
-  TiledServiceSource(TileService service, ServicePyramid pyramid, std::shared_ptr<SourceTileStore> store)
+  TiledServiceSource(TileService service, ServicePyramid pyramid, std::shared_ptr<SourceTileStore> store,
+                     const HeightLimits& limits)
       : service_(std::make_shared<const TileService>(std::move(service))),
         pyramid_(std::move(pyramid)),
-        store_(std::move(store)) {}
+        store_(std::move(store)),
+        limits_(limits) {}
 
   std::shared_ptr<const TileService> service_;
   ServicePyramid pyramid_;
   std::shared_ptr<SourceTileStore> store_;
+  HeightLimits limits_;
 };
 
 }  // namespace meridian::globebrowsing

@@ -14,6 +14,9 @@ namespace meridian::globebrowsing {
 namespace {
 
 constexpr std::string_view tooSmallPool = "the texture pool is too small for this view; raise TexturePoolSize";
+constexpr std::string_view tooManyChunks =
+    "a globe asks for more chunks than can be drawn, so coarser ones are; look for heights that are out of proportion, "
+    "or lower TargetLodScaleFactor";
 /// A globe coming nearer soon gets a larger pool.
 constexpr int framesUntilTold = 120;
 
@@ -60,6 +63,14 @@ void ChunkedSurface::update(const FrameContext& frame, const SurfaceSettings& se
   }
   tiles_->process(parts_.graphics->uploads(), settings.compositionMilliseconds);
   tellWhenFull();
+  tellWhenCoarse();
+}
+
+void ChunkedSurface::tellWhenCoarse() {
+  if (tree_.figures().coarsening > 1.0 && !toldCoarse_) {
+    toldCoarse_ = true;
+    log::warning("{}", tooManyChunks);
+  }
 }
 
 void ChunkedSurface::tellWhenFull() {
@@ -120,6 +131,9 @@ Settled ChunkedSurface::settled(std::size_t /*view*/) const {
   }
   if (!tree_.figures().atTarget) {
     return {false, fmt::format("{} chunks are not at their target", tree_.figures().missing)};
+  }
+  if (tree_.figures().coarsening > 1.0) {
+    return {true, std::string(tooManyChunks)};
   }
   return {};
 }

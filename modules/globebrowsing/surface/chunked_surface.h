@@ -43,6 +43,7 @@ class ChunkedSurface final : public Surface {
   ChunkedSurface(Parts parts, std::unique_ptr<GlobeTiles> tiles);
   void select(const FrameContext& frame, const SurfaceSettings& settings);
   void tellWhenFull();
+  void tellWhenCoarse();
 
   Parts parts_;
   std::unique_ptr<GlobeTiles> tiles_;
@@ -52,6 +53,7 @@ class ChunkedSurface final : public Surface {
   SurfaceSettings settings_;
   std::string programTrouble_;
   bool frameOpen_ = false;
+  bool toldCoarse_ = false;
   int fullFrames_ = 0;  ///< in a row, with a pool too small for the view
 };
 

@@ -20,6 +20,9 @@ const glm::dvec3 bodies[] = {{6378137.0, 6378137.0, 6356752.314245},
                              {286300.0, 278600.0, 223200.0},
                              {1161e3, 852e3, 513e3},
                              {900e3, 900e3, 1100e3}};
+/// Far flatter and longer than any that is known.
+const glm::dvec3 extremeBodies[] = {{1e6, 1e6, 1e5}, {1e6, 1e6, 1e4}, {1e6, 1e4, 1e4},
+                                    {1e4, 1e4, 1e6}, {1e6, 3e5, 5e4}, {2e4, 1e6, 1e6}};
 
 TileIndex randomTile(std::mt19937& random, int deepest) {
   const int level = static_cast<int>(random() % static_cast<unsigned>(deepest + 1));
@@ -95,6 +98,37 @@ TEST(ChunkBoundsTest, HoldEveryPointOfTheTile) {
         expectContained(opaque, random);
       }
     }
+  }
+}
+
+TEST(ChunkBoundsTest, HoldEveryPointOfFlattenedBodies) {
+  std::mt19937 random(11);
+  for (const glm::dvec3& radii : extremeBodies) {
+    const GeodeticTiling tiling(*Ellipsoid::fromRadii(radii));
+    for (int i = 0; i < 1500; ++i) {
+      expectContained(tiling, random);
+    }
+  }
+}
+
+/// A box much larger than its tile is near from everywhere, and makes the tile split for nothing.
+TEST(ChunkBoundsTest, AreNotMuchLargerThanTheTileOnFlattenedBodies) {
+  std::mt19937 random(12);
+  for (const glm::dvec3& radii : extremeBodies) {
+    const GeodeticTiling tiling(*Ellipsoid::fromRadii(radii));
+    int wide = 0;
+    int tiles = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const TileIndex index = randomTile(random, 14);
+      if (index.level < 7) {
+        continue;
+      }
+      const ChunkBounds bounds = chunkBounds(tiling, index, {0.0, 0.0});
+      ++tiles;
+      wide += bounds.box.half.x > 1.5 * bounds.edgeLength ? 1 : 0;
+      ASSERT_LT(bounds.box.half.x, 3.0 * tiling.ellipsoid().maximumRadius()) << toString(index);
+    }
+    EXPECT_LT(wide, tiles / 10) << radii.x << ' ' << radii.y << ' ' << radii.z;
   }
 }
 

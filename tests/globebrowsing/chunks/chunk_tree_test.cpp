@@ -551,6 +551,67 @@ TEST_F(ChunkTreeTest, SkirtsReachOverEveryGap) {
   EXPECT_GT(unequal, 100);
 }
 
+TEST_F(ChunkTreeTest, FlattenedBodiesNeedNoMoreChunksThanRoundOnes) {
+  residency_.finerColours = [](const TileIndex&) { return false; };
+  for (const glm::dvec3& radii : {glm::dvec3(1e6, 1e6, 1e5), glm::dvec3(1e6, 1e5, 1e5), glm::dvec3(1e5, 1e5, 1e6),
+                                  glm::dvec3(1e6, 1e6, 2e4), glm::dvec3(1e6, 3e5, 1e5)}) {
+    const GeodeticTiling tiling(*Ellipsoid::fromRadii(radii));
+    ChunkTree tree(tiling);
+    residency_.errorAtRoot = 0.2 * tiling.ellipsoid().maximumRadius();
+    for (const glm::dvec3& from : {glm::dvec3(3e6, 0.0, 0.0), glm::dvec3(0.0, 0.0, 3e6), glm::dvec3(2e6, 1e6, 1e6)}) {
+      residency_.newFrame();
+      tree.select(std::vector{testView(from, -from)}, settings_, residency_);
+      EXPECT_LT(tree.figures().visited, 3000U) << radii.x << ' ' << radii.y << ' ' << radii.z;
+      EXPECT_TRUE(tree.figures().atTarget);
+    }
+  }
+}
+
+/// Errors that never fall, as of heights that are no heights: without a bound there are 4^30 tiles.
+TEST_F(ChunkTreeTest, ASelectionEndsWhateverItsErrors) {
+  residency_.finerColours = [](const TileIndex&) { return true; };
+  residency_.range = {-1e34, 1e34};
+  settings_.mostVisited = 2000;
+  std::size_t loaded = 0;
+  for (const State state : {State::Complete, State::Nothing, State::Drawable}) {
+    residency_.stateOf = [state](const TileIndex& index) { return index.level == 0 ? State::Complete : state; };
+    residency_.errorAtRoot = 1e34;
+    const SelectionView view = above(0.7, 0.2, 2e7);
+    for (int frame = 0; frame < 60; ++frame) {
+      expectNoOverlaps(select(view));
+      EXPECT_LE(tree_.figures().visited, settings_.mostVisited + 4U * maximumLevel);
+      EXPECT_LE(tree_.figures().nodes, 8 * settings_.mostVisited);
+    }
+    EXPECT_GT(tree_.figures().coarsening, 1.0);
+    EXPECT_LT(tree_.figures().visited, settings_.mostVisited);
+    EXPECT_EQ(tree_.figures().atTarget, state == State::Complete);
+    loaded += tree_.selected().size();
+  }
+  EXPECT_GT(loaded, 0U);
+}
+
+TEST_F(ChunkTreeTest, CoarseningFallsWhenThereIsRoom) {
+  const SelectionView view = above(0.7, 0.2, 2e7);
+  const auto ordinary = select(view);
+  settings_.mostVisited = 8000;
+  residency_.range = {-1e14, 1e14};
+  residency_.errorAtRoot = 1e14;
+  residency_.version = 2;
+  for (int frame = 0; frame < 30; ++frame) {
+    select(view);
+  }
+  ASSERT_GT(tree_.figures().coarsening, 1.0);
+  residency_.range = {0.0, 0.0};
+  residency_.errorAtRoot = 1e6;
+  residency_.version = 3;
+  for (int frame = 0; frame < 400 && tree_.figures().coarsening > 1.0; ++frame) {
+    select(view);
+  }
+  EXPECT_EQ(tree_.figures().coarsening, 1.0);
+  EXPECT_EQ(select(view), ordinary);
+  EXPECT_TRUE(tree_.figures().atTarget);
+}
+
 TEST_F(ChunkTreeTest, EvaluatorsDifferAsNamed) {
   residency_.errorAtRoot = 0.0;
   residency_.finerColours = [](const TileIndex& index) { return index.level < 6; };

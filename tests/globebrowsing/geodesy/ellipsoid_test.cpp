@@ -213,7 +213,7 @@ INSTANTIATE_TEST_SUITE_P(Triaxial, AnyEllipsoidTest, triaxial, nameOf);
 TEST(EllipsoidTest, RefusesRadiiThatAreNoLengths) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
-  for (const double bad : {0.0, -1.0, nan, infinity, -infinity}) {
+  for (const double bad : {0.0, -1.0, nan, infinity, -infinity, 1e-300, 1e300}) {
     for (int axis = 0; axis < 3; ++axis) {
       glm::dvec3 radii(1000.0);
       radii[axis] = bad;
@@ -231,6 +231,28 @@ TEST(EllipsoidTest, KnowsItsShape) {
   EXPECT_FALSE(ellipsoidOf({"", {1.0, 2.0, 2.0}}).isSpheroid());
   EXPECT_EQ(ellipsoidOf({"", {3.0, 2.0, 1.0}}).minimumRadius(), 1.0);
   EXPECT_EQ(ellipsoidOf({"", {2.0, 3.0, 1.0}}).maximumRadius(), 3.0);
+}
+
+TEST(HeightLimitsTest, HoldRealReliefAndNoFillValues) {
+  struct Case {
+    glm::dvec3 radii;
+    std::vector<double> real;
+    std::vector<double> wild;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Case& body : {Case{{6378137, 6378137, 6356752}, {-11000, 8849}, {-9.9999998e33, -7e6, 1e8, 1e9, nan}},
+                           Case{{3396190, 3396190, 3376200}, {-8200, 21900}, {-1e7, 1e7}},
+                           Case{{286300, 278600, 223200}, {-22000, 42000}, {-3.4e38, 3.4e38}},
+                           Case{{60000, 60000, 60000}, {-40000, 80000}, {-1e5, 2e5}}}) {
+    const HeightLimits limits = Ellipsoid::fromRadii(body.radii)->heightLimits();
+    for (const double height : body.real) {
+      EXPECT_TRUE(limits.hold(height)) << height;
+    }
+    for (const double height : body.wild) {
+      EXPECT_FALSE(limits.hold(height)) << height;
+    }
+  }
+  EXPECT_TRUE(HeightLimits().hold(1e300));
 }
 
 }  // namespace

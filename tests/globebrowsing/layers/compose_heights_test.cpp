@@ -60,6 +60,15 @@ TEST(ComposeHeights, WhatIsNoNumberShowsWhatIsBelow) {
   EXPECT_THAT(composeHeights(std::vector<HeightPart>{{&nothing}}, threeByThree).metres, testing::Each(0.0F));
 }
 
+TEST(ComposeHeights, SettingsDoNotRaiseBeyondTheLimits) {
+  const HeightPixels low = filled(100.0F);
+  const HeightLimits limits{-5000.0, 7000.0};
+  EXPECT_THAT(composeHeights(std::vector<HeightPart>{{&low, {1.0, 1e30, 0.0}}}, threeByThree, limits).metres,
+              testing::Each(7000.0F));
+  EXPECT_THAT(composeHeights(std::vector<HeightPart>{{&low, {1.0, -1e30, 0.0}}}, threeByThree, limits).metres,
+              testing::Each(-5000.0F));
+}
+
 TEST(ComposeHeights, AnAncestorsHeightsAreEnlarged) {
   HeightPixels slope = filled(0.0F);
   for (std::size_t i = 0; i < slope.metres.size(); ++i) {

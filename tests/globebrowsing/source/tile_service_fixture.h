@@ -192,7 +192,7 @@ class Served {
     fetcher_ = std::make_shared<FakeFetcher>([this](const std::string& url) { return answer(url); });
     store_ = std::make_shared<SourceTileStore>(SourceTileStore::Parts{
         fetcher_, [this](std::function<void()> task) { worker_.post(std::move(task)); }, decodeTexels});
-    auto made = TiledServiceSource::make(service_, store_);
+    auto made = TiledServiceSource::make(service_, store_, earth().ellipsoid().heightLimits());
     EXPECT_TRUE(made) << (made ? "" : made.error().message());
     source_ = *made;
   }

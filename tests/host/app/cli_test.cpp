@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
 
 #include "cli_fixture.h"
 #include "host/graphics/image.h"
@@ -255,9 +256,11 @@ TEST_F(CommandLine, SettingsAndScriptsReachTheScene) {
 TEST_F(CommandLine, WhatTheSceneRefusesFails) {
   emptyScene();
   write("bad.lua", "error('oops')\n");
+  ASSERT_EQ(mkfifo(in("pipe").c_str(), 0600), 0);  // nobody ever writes to it
   for (const char* arguments :
        {"--set No.Such.Property=1", "--set RenderEngine.Antialiasing=99", "--anchor Nowhere", "--camera 0,0,1000",
-        "--script missing.lua", "--script bad.lua", "--play missing.osrec", "--record missing/folder/r.osrectxt"}) {
+        "--script missing.lua", "--script bad.lua", "--script /dev/zero", "--script pipe", "--play pipe",
+        "--play missing.osrec", "--record missing/folder/r.osrectxt"}) {
     const Outcome outcome = run(std::string("empty.asset --headless --size 8x8 ") + arguments);
     EXPECT_EQ(outcome.code, 1) << arguments;
     EXPECT_NE(outcome.errors, "") << arguments;
