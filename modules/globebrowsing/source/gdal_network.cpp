@@ -25,6 +25,7 @@ namespace {
 
 constexpr vsi_l_offset largestDescription = 4U << 20U;
 constexpr int deepestNesting = 8;  ///< VRTs that show VRTs
+constexpr std::array<std::string_view, 5> descriptionEndings{".vrt", ".xml", ".wms", ".mrf", ".wmts"};
 
 std::atomic<bool> offline{false};
 
@@ -42,8 +43,21 @@ class Configuration {
     CPLSetConfigOption(name, value.empty() ? nullptr : value.c_str());
   }
 
+  /// That no file is looked for on a server: none has this name. Here the user's own value has to wait.
+  void setOffline(bool isOffline) {
+    constexpr const char* name = "CPL_VSIL_CURL_ALLOWED_FILENAME";
+    if (isOffline && !users_) {
+      users_ = CPLGetConfigOption(name, "");
+      CPLSetConfigOption(name, "none");
+    } else if (!isOffline && users_) {
+      CPLSetConfigOption(name, users_->empty() ? nullptr : users_->c_str());
+      users_.reset();
+    }
+  }
+
  private:
   std::set<std::string> ours_;
+  std::optional<std::string> users_;  ///< while we are offline
 };
 
 /// What GDAL asks through its function for whole documents is answered here while it is offline.
@@ -85,22 +99,36 @@ struct CloseFile {
   void operator()(VSILFILE* file) const { VSIFCloseL(file); }
 };
 
-/// The text of a file that begins as XML does, also in an archive; nothing for any other.
-std::optional<std::string> documentAt(const std::string& path) {
+struct Document {
+  std::string text{};  ///< empty: it is none
+  bool isTooLarge = false;
+};
+
+/// A file that begins as XML does, also in an archive.
+Document documentAt(const std::string& path) {
   const std::unique_ptr<VSILFILE, CloseFile> file(VSIFOpenL(path.c_str(), "rb"));
   std::string text(256, '\0');
   if (file == nullptr) {
-    return std::nullopt;
+    return {};
   }
   text.resize(VSIFReadL(text.data(), 1, text.size(), file.get()));
-  if (!withoutMark(text).starts_with('<') || VSIFSeekL(file.get(), 0, SEEK_END) != 0 ||
-      VSIFTellL(file.get()) > largestDescription) {
-    return std::nullopt;
+  if (!withoutMark(text).starts_with('<') || VSIFSeekL(file.get(), 0, SEEK_END) != 0) {
+    return {};
+  }
+  if (VSIFTellL(file.get()) > largestDescription) {
+    return {{}, true};
   }
   text.resize(static_cast<std::size_t>(VSIFTellL(file.get())));
   VSIFSeekL(file.get(), 0, SEEK_SET);
   text.resize(VSIFReadL(text.data(), 1, text.size(), file.get()));
-  return text;
+  return {std::move(text)};
+}
+
+/// By its name. A mosaic has thousands of rasters, which are not opened before they are shown.
+bool mayBeDescription(const std::string& path) {
+  const std::string lower = lowerCase(path);
+  return std::any_of(descriptionEndings.begin(), descriptionEndings.end(),
+                     [&](std::string_view ending) { return lower.ends_with(ending); });
 }
 
 /// Goes through descriptions and what they name.
@@ -112,8 +140,13 @@ class Search {
       lookInto(path, {}, nesting);
     } else if (isServersName(begin)) {
       note(std::string(begin));
-    } else if (const auto text = documentAt(path)) {
-      lookInto(*text, path, nesting);
+    } else if ((nesting == 0 || mayBeDescription(path)) && seen_.insert(path).second) {
+      const Document document = documentAt(path);
+      if (document.isTooLarge) {
+        note(path + ", which is too large to look for servers in it");
+      } else if (!document.text.empty()) {
+        lookInto(document.text, path, nesting);
+      }
     }
   }
   [[nodiscard]] GdalReach take() { return std::move(reach_); }
@@ -172,6 +205,7 @@ class Search {
   }
 
   GdalReach reach_;
+  std::set<std::string> seen_;  ///< files
 };
 
 }  // namespace
@@ -194,8 +228,7 @@ void setGdalNetwork(const NetworkOptions& options) {
   }
   CPLSetConfigOption("GDAL_HTTP_UNSAFESSL", "NO");
   offline = options.cache.mode == CacheMode::CacheOnly;
-  // No file has this name, so that none is looked for on a server.
-  configuration.set("CPL_VSIL_CURL_ALLOWED_FILENAME", offline ? "none" : "");
+  configuration.setOffline(offline);
   static std::once_flag once;
   std::call_once(once, [] { CPLHTTPSetFetchCallback(refuseOffline, nullptr); });
 }
@@ -208,6 +241,18 @@ GdalReach gdalReach(const std::string& path) {
   Search search;
   search.look(path, 0);
   return search.take();
+}
+
+std::string withVerifiedCertificates(const std::string& path) {
+  const bool isInline = withoutMark(path).starts_with('<');
+  std::string text = isInline ? path : mayBeDescription(path) ? documentAt(path).text : std::string();
+  const std::size_t begin = text.find("<UnsafeSSL>");
+  constexpr std::string_view end = "</UnsafeSSL>";
+  const std::size_t last = begin == std::string::npos ? begin : text.find(end, begin);
+  if (last == std::string::npos || text.find("<GDAL_WMS") > begin) {
+    return path;
+  }
+  return text.erase(begin, last + end.size() - begin);
 }
 
 Result<void> checkReach(const GdalReach& reach, const std::string& where) {

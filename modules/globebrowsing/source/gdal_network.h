@@ -10,9 +10,9 @@ namespace meridian::globebrowsing {
 
 /// Has GDAL ask servers, where it does so itself, as our own network does: User-Agent, time limits, verified
 /// certificates, and nothing at all in the mode cache-only. An option that the user gives GDAL (by the environment or
-/// its file of options) stays, but GDAL_HTTP_UNSAFESSL. GDAL's WMS driver takes the time of a whole transfer from the
-/// description (300 s where it has no Timeout); stalls end its requests as others. For what is sent afterwards; safe
-/// from any thread.
+/// its file of options) stays, but GDAL_HTTP_UNSAFESSL, and CPL_VSIL_CURL_ALLOWED_FILENAME while offline. GDAL's WMS
+/// driver takes the time of a whole transfer from the description (300 s where it has no Timeout); stalls end its
+/// requests as others. For what is sent afterwards; safe from any thread.
 void setGdalNetwork(const NetworkOptions& options);
 /// In the mode cache-only.
 [[nodiscard]] bool isGdalOffline();
@@ -23,6 +23,8 @@ struct GdalReach {
   bool isUnverified = false;            ///< a description wants certificates not to be verified
 };
 
+/// A path, or in its place the text of the <GDAL_WMS> that it is or names, without its UnsafeSSL. Reads the file.
+[[nodiscard]] std::string withVerifiedCertificates(const std::string& path);
 /// Of a path as RasterDescription has it. Reads it where it is a description of a service or a VRT, and what that
 /// names, so call it on a worker; asks no server. Rasters of which a file in another format refers to a server are not
 /// seen; GDAL then finds no file there while it is offline.

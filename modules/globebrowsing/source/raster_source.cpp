@@ -63,13 +63,15 @@ Result<void> checkBands(GDALDataset& dataset, const std::string& where) {
 RasterSource::RasterSource(std::unique_ptr<RasterAccess> access) : access_(std::move(access)) {}
 RasterSource::~RasterSource() = default;
 
-Result<std::shared_ptr<RasterSource>> RasterSource::open(const RasterDescription& description) {
+Result<std::shared_ptr<RasterSource>> RasterSource::open(const RasterDescription& asked) {
   initializeGdal();
-  const std::string& where = description.where.empty() ? description.path : description.where;
+  RasterDescription description = asked;
+  const std::string& where = asked.where.empty() ? asked.path : asked.where;
   if (auto named = checkPath(description, where); !named) {
     return tl::make_unexpected(named.error());
   }
   const GdalMessages messages;
+  description.path = withVerifiedCertificates(asked.path);
   const GdalReach reach = gdalReach(description.path);
   if (auto allowed = checkReach(reach, where); !allowed) {
     return tl::make_unexpected(allowed.error());

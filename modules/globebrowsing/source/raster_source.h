@@ -82,7 +82,7 @@ class RasterSource final : public PixelSource {
   /// Opens and examines; may read from disk or network, so call it on a worker. Errors: no such file, a directory, not
   /// a raster, a server that is not to be asked (gdal_network.h), no bands, complex samples, a size beyond 2^31 - 1
   /// pixels of memory, a CRS that PROJ rejects, an invertible geotransform missing, an extent outside the globe.
-  [[nodiscard]] static Result<std::shared_ptr<RasterSource>> open(const RasterDescription& description);
+  [[nodiscard]] static Result<std::shared_ptr<RasterSource>> open(const RasterDescription& asked);
   ~RasterSource() override;
   RasterSource(const RasterSource&) = delete;
   RasterSource& operator=(const RasterSource&) = delete;

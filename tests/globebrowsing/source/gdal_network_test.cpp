@@ -127,11 +127,38 @@ TEST_F(GdalNetwork, WhatIsOpenAsksNobodyOfflineAndGoesOnAfterwards) {
 }
 
 TEST_F(GdalNetwork, CertificatesAreAlwaysVerified) {
-  const auto source = RasterSource::open({tiledWms("<UnsafeSSL>true</UnsafeSSL>")});
-  ASSERT_FALSE(source);
+  // As OpenSpace writes it for GIBS: a description that is opened is opened without.
+  const std::string careless = tiledWms("<UnsafeSSL>true</UnsafeSSL>");
+  EXPECT_EQ(withVerifiedCertificates(careless), tiledWms());
+  const std::string file = testing::TempDir() + "careless.wms";
+  std::ofstream(file) << careless;
+  EXPECT_EQ(withVerifiedCertificates(file), tiledWms());
+  EXPECT_FALSE(gdalReach(withVerifiedCertificates(file)).isUnverified);
+  const auto source = RasterSource::open({vrt(escaped(careless))});
+  ASSERT_FALSE(source) << "what a VRT names is GDAL's to read";
   EXPECT_THAT(source.error().message(), HasSubstr("UnsafeSSL"));
   EXPECT_EQ(server_.count(), 0U);
+  std::remove(file.c_str());
   EXPECT_STREQ(CPLGetConfigOption("GDAL_HTTP_UNSAFESSL", ""), "NO");
+}
+
+TEST_F(GdalNetwork, LooksAtADescriptionOnceAndAtRastersNotAtAll) {
+  const std::string file = testing::TempDir() + "itself.vrt";
+  std::string sources;
+  for (int band = 0; band < 40; ++band) {
+    sources += "<A><SourceFilename>" + file + "</SourceFilename></A>";
+  }
+  std::ofstream(file) << "<VRTDataset>" << sources << "</VRTDataset>";
+  EXPECT_FALSE(gdalReach(file).server) << "and it ends";
+  const std::string raster = testing::TempDir() + "raster.tif";
+  std::ofstream(raster) << tms();
+  EXPECT_FALSE(gdalReach(vrt(raster)).server);
+  const std::string large = testing::TempDir() + "large.vrt";
+  std::ofstream(large) << "<VRTDataset>" << std::string(std::size_t{5} << 20, ' ') << "</VRTDataset>";
+  EXPECT_THAT(gdalReach(large).server.value_or(""), HasSubstr("too large"));
+  for (const std::string& each : {file, raster, large}) {
+    std::remove(each.c_str());
+  }
 }
 
 TEST_F(GdalNetwork, HandsOnWhatIsSetAndCanBeTakenBack) {
