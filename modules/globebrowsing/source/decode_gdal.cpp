@@ -61,7 +61,7 @@ class MemoryDataset {
       int height = 0;
       band.GetBlockSize(&width, &height);
       const double bytes = 1.0 * width * height * GDALGetDataTypeSizeBytes(band.GetRasterDataType());
-      if (bytes > 8.0 * mostTilePixels || GDALDataTypeIsComplex(band.GetRasterDataType()) != 0) {
+      if (bytes > 8.0 * limits.pixels || GDALDataTypeIsComplex(band.GetRasterDataType()) != 0) {
         return failure("the image's blocks are too large, or its samples complex", where_);
       }
     }

@@ -36,7 +36,8 @@ Result<Blob> decode(std::span<const std::uint8_t> bytes, const std::string& wher
   }
   const std::uint64_t pixels = std::uint64_t{info[3]} * info[4];
   const std::uint64_t values = pixels * info[2] * info[5];
-  if (info[2] < 1 || info[5] < 1 || info[2] > 16 || info[5] > 16 || values > 4 * std::uint64_t{mostTilePixels}) {
+  if (info[2] < 1 || info[5] < 1 || info[2] > 16 || info[5] > 16 ||
+      values > 4 * static_cast<std::uint64_t>(limits.pixels)) {
     return failure("the LERC blob has too many bands", where);
   }
   Blob blob{static_cast<int>(info[3]), static_cast<int>(info[4]), static_cast<int>(info[5]), static_cast<int>(info[2])};

@@ -18,9 +18,6 @@ namespace meridian::globebrowsing {
 
 namespace {
 
-// What is set of the one may not be beyond what is built for.
-static_assert(ImageLimits{}.side == longestTileSide && ImageLimits{}.pixels == mostTilePixels);
-
 constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
 
 bool startsWith(std::span<const std::uint8_t> bytes, std::string_view begin, std::size_t at = 0) {

@@ -30,9 +30,8 @@ struct DecodedHeights {
   [[nodiscard]] bool isEmpty() const { return metres.empty(); }
 };
 
-/// Of a tile's sides whatever ImageLimits say, and what these say by default.
+/// Of a tile's sides whatever ImageLimits say.
 inline constexpr int longestTileSide = 8192;
-inline constexpr std::int64_t mostTilePixels = std::int64_t{1} << 24;
 
 /// Decodes the body of an answer to a request for a tile of `service.matrices[matrix]`: JPEG, PNG, WebP, TIFF, GIF,
 /// BMP, LERC; which, its first bytes say. Grey, grey with alpha, RGB, RGBA, palettes; 16 bits are brought to 8. With
