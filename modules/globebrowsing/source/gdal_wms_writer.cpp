@@ -273,7 +273,7 @@ Result<std::string> gdalWmsOfMaps(const Capabilities& capabilities, const TileSe
                                        (rows * coarsest.tileHeight) << finer);
   std::string written = document(service, elementOfMaps(capabilities, service, followsTime),
                                  windowOf(coarsest, coarsest.firstColumn, coarsest.firstRow), size);
-  return followsTime ? Result<std::string>(std::move(written)) : confirmed(std::move(written), service, false);
+  return confirmed(std::move(written), service, false);
 }
 
 }  // namespace meridian::globebrowsing
