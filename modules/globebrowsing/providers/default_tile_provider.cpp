@@ -52,6 +52,10 @@ Result<std::optional<std::array<double, 4>>> extentOf(const ProviderRequest& req
 /// The asset's word on heights, in place of the service's own.
 TileService withHeights(TileService service, const RasterDescription& description, const TileSettings& tiles) {
   service.encoding = tiles.encoding.value_or(service.encoding);
+  if (service.encoding != TileEncoding::Image) {
+    service.heightUrl = nullptr;  // values instead of colours
+    service.noData.reset();
+  }
   if (description.heightScale) {
     service.heightScale = description.heightScale;
   }
