@@ -141,8 +141,8 @@ void CapabilitiesLoader::deliver() {
   for (Load& load : loads_) {
     if (load.work == nullptr) {
       begin(load);
-    }
-    if (load.work->isComplete() || now >= load.end) {
+      open.push_back(std::move(load));
+    } else if (load.work->isComplete() || now >= load.end) {
       load.work->giveUp();
       found.emplace_back(std::move(load.done),
                          load.work->offer(fmt::format("did not arrive within {} seconds", wait_.count())));

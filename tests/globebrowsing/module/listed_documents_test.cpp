@@ -42,10 +42,10 @@ class ListedDocuments : public testing::Test {
 
   void give(const std::string& path, const std::string& text) { texts_[host + path] = text; }
   /// The loader's answer for the server at that path.
-  MapServers::Offer offered(const std::string& path, std::chrono::seconds wait = CapabilitiesLoader::longestWait) {
+  MapServers::Offer offered(const std::string& path, std::chrono::seconds wait = std::chrono::hours(1)) {
     return offeredAt(host + path, wait);
   }
-  MapServers::Offer offeredAt(const std::string& url, std::chrono::seconds wait = CapabilitiesLoader::longestWait) {
+  MapServers::Offer offeredAt(const std::string& url, std::chrono::seconds wait = std::chrono::hours(1)) {
     CapabilitiesLoader loader(workers_, fetcher_, wait);
     std::optional<MapServers::Offer> answer;
     loader.load({"S", "Earth", url}, [&](MapServers::Offer offer) { answer = std::move(offer); });
