@@ -367,6 +367,8 @@ Result<void> ScriptEngine::start(int arguments, Around around) {
 
 Result<void> ScriptEngine::runPart(Waiting script, int arguments) {
   Private& self = *private_;
+  // Lua's limit of nested calls goes on counting from the thread that is calling.
+  lua_State* const from = self.calling != nullptr ? self.calling : lua_;
   const Scoped calling(self.calling, static_cast<lua_State*>(nullptr));
   const Scoped thread(self.thread, script.thread);
   const Scoped budget(self.instructionsLeft, static_cast<std::int64_t>(limits_.instructions));
@@ -375,7 +377,7 @@ Result<void> ScriptEngine::runPart(Waiting script, int arguments) {
   self.explained.reset();
   self.awaited = nullptr;
   int results = 0;
-  const int resumed = lua_resume(script.thread, lua_, arguments, &results);
+  const int resumed = lua_resume(script.thread, from, arguments, &results);
   if (resumed == LUA_YIELD && self.awaited != nullptr) {
     script.awaited = std::exchange(self.awaited, nullptr);
     script.arguments = std::exchange(self.awaitedArguments, {});
