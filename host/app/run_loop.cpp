@@ -127,7 +127,8 @@ void RunLoop::present() {
 }
 
 double RunLoop::settleSeconds() const {
-  const bool isPicture = options_.output.has_value() && parts_.window == nullptr;
+  // A server that is down would hold up every frame of a video.
+  const bool isPicture = options_.output.has_value() && parts_.window == nullptr && !hasTimedOut_;
   return options_.settleSeconds.value_or(isPicture ? Options::defaultSettleSeconds : 0.0);
 }
 
@@ -171,6 +172,10 @@ Result<void> RunLoop::drawUntilSettled(Clock::time_point begin) {
     ++figures.framesSettled;
   } else {
     ++figures.framesTimedOut;
+    if (!hasTimedOut_ && !options_.settleSeconds) {
+      log::warning("later frames are drawn as they are; --settle says how long each may wait");
+    }
+    hasTimedOut_ = true;
     log::warning("frame {} is not complete: {}", frames_, settled.reason);
   }
   return {};

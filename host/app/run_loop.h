@@ -64,6 +64,7 @@ class RunLoop {
   std::uint64_t drawings_ = 0;  ///< of them, with those of --settle
   Clock::time_point lastTold_ = Clock::now();
   bool quit_ = false;
+  bool hasTimedOut_ = false;  ///< a frame was not complete in time
   bool verticalSync_ = true;
 };
 

@@ -47,9 +47,14 @@ Result<void> Session::advance() {
 }
 
 void Session::resumeScripts() {
+  if (!hasWaitingScripts()) {
+    return;
+  }
   for (const Error& error : application_.scripts().resumeWaiting()) {
     log::error("{}", error.message());
   }
+  // They may have set the time, or moved nodes.
+  application_.scene().evaluate(application_.clock().time());
 }
 
 Result<void> Session::checkPlayback() const {
