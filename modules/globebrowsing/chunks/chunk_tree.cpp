@@ -36,7 +36,7 @@ constexpr int stopgapLevels = 3;
 
 /// By how much coarsening grows when a selection is too large, and falls when one has become small; and the share of
 /// the most tiles, and the frames between, at which it falls. Half the error needs two to four times the tiles.
-constexpr double coarser = 4.0;
+constexpr double coarser = 16.0;
 constexpr double finer = 0.5;
 constexpr std::uint32_t small = 16;
 constexpr std::uint64_t finerEvery = 4;
@@ -80,9 +80,7 @@ class ChunkTree::Implementation {
   [[nodiscard]] const SelectionFigures& figures() const { return figures_; }
 
  private:
-  /// Selects from all roots.
-  void selectOnce();
-  void coarsen() { coarsening_ = std::min(coarsest, coarser * coarsening_); }
+  void selectFromRoots();
   [[nodiscard]] bool isSpent() const { return figures_.visited >= settings_.mostVisited; }
   /// Selects what covers the node; false when something in it cannot be drawn.
   bool visit(NodeNumber number);
@@ -157,18 +155,14 @@ void ChunkTree::Implementation::select(std::span<const SelectionView> views, con
     residency.want(pool_[root].index, 0, rootPriority);
     keep(pool_[root]);
   }
-  selectOnce();
-  if (cutShort_) {
-    coarsen();
-    selectOnce();
-  }
+  selectFromRoots();
   finish();
   if (cutShort_) {
-    coarsen();
+    coarsening_ = std::min(coarsest, coarser * coarsening_);
   }
 }
 
-void ChunkTree::Implementation::selectOnce() {
+void ChunkTree::Implementation::selectFromRoots() {
   figures_ = {};
   figures_.coarsening = coarsening_;
   provisional_ = false;

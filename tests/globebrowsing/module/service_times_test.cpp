@@ -62,7 +62,7 @@ TEST_F(ServiceTimesTest, PlaysThroughDaysAndIsNeverBlank) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(90);
   for (int n = 1; day < 19.5; ++n) {
     const bool isHeld = day > 15.0 && changes < 3 && std::chrono::steady_clock::now() < end;
-    day = isHeld ? day : std::min(day + 0.1, 19.5);
+    day = isHeld ? day : std::min(day + 0.0975, 19.5);  // never on the stroke of midnight
     time_ = TimedPyramid::timeOf(day);
     frame();
     const TimedPicture now = seen();

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include "globebrowsing/source/gdal_runtime.h"
 #include "globebrowsing/source/service_description.h"
 #include "service_fixture.h"
 
@@ -15,6 +16,7 @@ using testing::HasSubstr;
 class VrtTools : public testing::Test {
  protected:
   VrtTools() : folder_(std::filesystem::path(testing::TempDir()) / ("meridian_vrt_tools_" + std::to_string(getpid()))) {
+    initializeGdal();
     std::filesystem::create_directories(folder_);
     write("a.wms", "<DataValues NoData=\"7\"/>");
   }
