@@ -207,15 +207,15 @@ bool ScriptEngine::Private::beginsToWait(lua_State* lua, const ScriptFunction& f
 int ScriptEngine::Private::callFunction(lua_State* lua) {
   Private& self = of(lua);
   const auto callNow = [](lua_State* caller, int /*status*/, lua_KContext /*context*/) -> int {
-    Private& engine = of(caller);
-    const Scoped calling(engine.calling, caller);
+    Private& own = of(caller);
+    const Scoped nowCalling(own.calling, caller);
     Result<int> results = invoke(caller, calledFunction(caller));
     if (results) {
       return *results;
     }
     Error error = std::move(results.error());
     error.where = joinedPlace(placeFrom(caller, 1), error.where);
-    engine.engine->pushError(caller, std::move(error));
+    own.engine->pushError(caller, std::move(error));
     return lua_error(caller);
   };
   if (self.beginsToWait(lua, calledFunction(lua))) {
