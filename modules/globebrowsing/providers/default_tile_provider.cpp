@@ -154,14 +154,14 @@ Result<std::shared_ptr<DefaultTileProvider>> DefaultTileProvider::makeUnopened(c
   description.heightOffset = numberAt(request.table, "HeightOffset");
   description.heightDatum = numberAt(request.table, "HeightDatum");
   description.heightLimits = request.heightLimits;
-  return std::make_shared<DefaultTileProvider>(std::move(path), std::move(description), std::move(*tiles), request);
+  return std::make_shared<DefaultTileProvider>(std::move(path), std::move(description), *tiles, request);
 }
 
 DefaultTileProvider::DefaultTileProvider(DataPath path, RasterDescription description, TileSettings tiles,
                                          const ProviderRequest& request)
     : path_(std::move(path)),
       description_(std::move(description)),
-      tiles_(std::move(tiles)),
+      tiles_(tiles),
       whereTiles_(placeOf(request, "Tiles")),
       sourceTiles_(request.sourceTiles),
       share_(request.share) {

@@ -40,7 +40,7 @@ class ServiceOpening {
         where_(std::move(where)),
         fetcher_(std::move(fetcher)),
         share_(std::move(share)),
-        settings_(std::move(settings)) {}
+        settings_(settings) {}
   /// Of a layer of capabilities that are there.
   ServiceOpening(CapabilitiesReference reference, std::shared_ptr<CapabilitiesDocument> document);
 

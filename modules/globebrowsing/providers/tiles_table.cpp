@@ -73,7 +73,7 @@ void collectUnknown(const Value& value, const std::string& path, std::string_vie
     collectUnknown(table->list[i], fmt::format("{}[{}]", path, i + 1), where, found);
   }
   for (const auto& [key, item] : table->fields) {
-    const std::string below = path.empty() ? key : path + '.' + key;
+    const std::string below = path.empty() ? key : fmt::format("{}.{}", path, key);
     collectUnknown(item, below, where, found);
     if (key == "Tiles") {
       for (UnknownKey& unknown : unknownKeys(item, {&tilesSchema()}, {})) {

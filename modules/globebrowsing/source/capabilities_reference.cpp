@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "globebrowsing/source/document_file.h"
 #include "globebrowsing/source/service_text.h"
 
@@ -174,7 +176,7 @@ Result<std::string> writeReference(const Capabilities& capabilities, const Capab
                                                         {"crs", choices.crs},
                                                         {"format", choices.format},
                                                         {"time", choices.time}}) {
-    path.append(value.empty() ? std::string() : "," + name + "=\"" + value + "\"");
+    path.append(value.empty() ? std::string() : fmt::format(",{}=\"{}\"", name, value));
   }
   const std::optional<CapabilitiesReference> read = readReference(path);
   if (!read) {

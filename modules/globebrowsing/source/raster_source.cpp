@@ -121,12 +121,12 @@ bool RasterSource::hasDataFiner(const Tiling& tiling, const TileIndex& index, co
 
 Result<ColourPixels> RasterSource::colours(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
                                            std::stop_token stop) const {
-  return resampleColours(*this, tiling, index, layout, std::move(stop));
+  return resampleColours(*this, tiling, index, layout, stop);
 }
 
 Result<HeightPixels> RasterSource::heights(const Tiling& tiling, const TileIndex& index, const TileLayout& layout,
                                            std::stop_token stop) const {
-  return resampleHeights(*this, tiling, index, layout, std::move(stop));
+  return resampleHeights(*this, tiling, index, layout, stop);
 }
 
 }  // namespace meridian::globebrowsing
