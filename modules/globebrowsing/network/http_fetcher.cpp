@@ -8,7 +8,6 @@
 #include <random>
 #include <string>
 #include <thread>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -59,7 +58,6 @@ class HttpFetcher::Engine {
   void serveStale(Id id);
   void serveStaleOf(const std::string& host);
   void finish(Id id, const Result<Fetched>& result);
-  Flight take(Id id);
   void updateGauges();
   [[nodiscard]] bool mayServeStale(const Flight& flight) const;
 
@@ -77,9 +75,7 @@ class HttpFetcher::Engine {
   // The network thread's.
   RequestQueue queue_;
   NegativeCache negatives_;
-  std::unordered_map<Id, Flight> flights_;
-  std::unordered_map<std::string, Id> flightOf_;  ///< by identity
-  Id lastId_ = 0;
+  Flights flights_;
   std::thread thread_;
 };
 
@@ -130,11 +126,11 @@ HttpFetcher::Engine::~Engine() {
   transfers_.wake();
   thread_.join();
   mailbox_->close();
-  for (auto& [id, flight] : flights_) {
+  flights_.forEach([](Id, const Flight& flight) {
     for (const auto& waiter : flight.waiters) {
       waiter->delivery.cancel();
     }
-  }
+  });
 }
 
 std::unique_ptr<PendingFetch> HttpFetcher::Engine::fetch(FetchRequest request, Done done) {
@@ -234,44 +230,38 @@ void HttpFetcher::Engine::begin(FetchRequest request, const std::shared_ptr<Wait
     return;
   }
   std::string identity = identityOf(key, request);
-  const auto [place, isNew] = flightOf_.try_emplace(identity, lastId_ + 1);
-  const Id id = place->second;
-  waiter->flight = id;
+  const auto [id, isNew] = flights_.join(std::move(identity), waiter);
   if (!isNew) {
     ++statistics_.joined;
-    flights_.at(id).waiters.push_back(waiter);
     renew(waiter);
     return;
   }
-  ++lastId_;
-  Flight& flight = flights_.emplace(id, Flight{.request = std::move(request)}).first->second;
+  Flight& flight = flights_.at(id);
+  flight.request = std::move(request);
   flight.address = std::move(*address);
   flight.key = std::move(key);
-  flight.identity = std::move(identity);
-  flight.waiters.push_back(waiter);
   lookUp(id, flight);
 }
 
 void HttpFetcher::Engine::renew(const std::shared_ptr<Waiter>& waiter) {
   waiter->isRenewed = false;
-  const auto place = flights_.find(waiter->flight);
-  if (place != flights_.end() && place->second.isQueued) {
-    queue_.setPriority(place->first, greatestPriority(place->second));
+  if (const Flight* flight = flights_.find(waiter->flight); flight != nullptr && flight->isQueued) {
+    queue_.setPriority(waiter->flight, greatestPriority(*flight));
   }
 }
 
 void HttpFetcher::Engine::cancel(const std::shared_ptr<Waiter>& waiter) {
   ++statistics_.cancelled;
-  const auto place = flights_.find(waiter->flight);
-  if (place == flights_.end()) {
+  const Id id = waiter->flight;
+  Flight* const flight = flights_.find(id);
+  if (flight == nullptr) {
     return;
   }
-  std::erase(place->second.waiters, waiter);
-  if (place->second.waiters.empty()) {
-    const Id id = place->first;
+  std::erase(flight->waiters, waiter);
+  if (flight->waiters.empty()) {
     queue_.remove(id, Clock::now());
     transfers_.cancel(id);
-    take(id);
+    flights_.take(id);
   } else {
     renew(waiter);
   }
@@ -288,11 +278,11 @@ void HttpFetcher::Engine::lookUp(Id id, Flight& flight) {
 }
 
 void HttpFetcher::Engine::found(Id id, std::optional<CachedAnswer> kept) {
-  const auto place = flights_.find(id);
-  if (place == flights_.end()) {
+  Flight* const known = flights_.find(id);
+  if (known == nullptr) {
     return;  // cancelled meanwhile
   }
-  Flight& flight = place->second;
+  Flight& flight = *known;
   if (kept && kept->body->size() > *flight.request.maximumBytes) {
     kept.reset();
   }
@@ -346,11 +336,11 @@ void HttpFetcher::Engine::startTransfers() {
 
 void HttpFetcher::Engine::ended(TransferEnding ending) {
   const Id id = ending.id;
-  const auto place = flights_.find(id);
-  if (place == flights_.end() || !queue_.isRunning(id)) {
+  const Flight* const known = flights_.find(id);
+  if (known == nullptr || !queue_.isRunning(id)) {
     return;  // cancelled by a `done` of the same round, or recalled in it
   }
-  const Flight& flight = place->second;
+  const Flight& flight = *known;
   if (ending.isMultiplexed) {
     queue_.setMultiplexed(flight.address.host);
   }
@@ -444,11 +434,11 @@ void HttpFetcher::Engine::serveStale(Id id) {
 /// What waits for a server that has turned out to be down, and need not.
 void HttpFetcher::Engine::serveStaleOf(const std::string& host) {
   std::vector<Id> served;
-  for (const auto& [id, flight] : flights_) {
+  flights_.forEach([&](Id id, const Flight& flight) {
     if (flight.isQueued && flight.address.host == host && mayServeStale(flight)) {
       served.push_back(id);
     }
-  }
+  });
   for (const Id id : served) {
     queue_.remove(id, Clock::now());
     transfers_.cancel(id);
@@ -457,19 +447,11 @@ void HttpFetcher::Engine::serveStaleOf(const std::string& host) {
 }
 
 void HttpFetcher::Engine::finish(Id id, const Result<Fetched>& result) {
-  const Flight flight = take(id);
+  const Flight flight = flights_.take(id);
   for (const auto& waiter : flight.waiters) {
     statistics_.failures += result ? 0U : 1U;
     waiter->delivery.deliver(result);
   }
-}
-
-Flight HttpFetcher::Engine::take(Id id) {
-  const auto place = flights_.find(id);
-  Flight flight = std::move(place->second);
-  flights_.erase(place);
-  flightOf_.erase(flight.identity);
-  return flight;
 }
 
 void HttpFetcher::Engine::updateGauges() {

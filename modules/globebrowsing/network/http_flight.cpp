@@ -6,6 +6,32 @@
 
 namespace meridian::globebrowsing {
 
+std::pair<Flights::Id, bool> Flights::join(std::string identity, const std::shared_ptr<Waiter>& waiter) {
+  const auto [place, isNew] = byIdentity_.try_emplace(std::move(identity), lastId_ + 1);
+  const Id id = place->second;
+  Flight& flight = byId_[id];
+  if (isNew) {
+    ++lastId_;
+    flight.identity = place->first;
+  }
+  flight.waiters.push_back(waiter);
+  waiter->flight = id;
+  return {id, isNew};
+}
+
+Flight* Flights::find(Id id) {
+  const auto place = byId_.find(id);
+  return place == byId_.end() ? nullptr : &place->second;
+}
+
+Flight Flights::take(Id id) {
+  const auto place = byId_.find(id);
+  Flight flight = std::move(place->second);
+  byId_.erase(place);
+  byIdentity_.erase(flight.identity);
+  return flight;
+}
+
 double orderable(double priority) {
   return std::isnan(priority) ? -std::numeric_limits<double>::infinity() : priority;
 }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -38,14 +40,42 @@ struct Waiter {
 
 /// Requests that may share a transfer and its answer.
 struct Flight {
-  FetchRequest request;
+  FetchRequest request{};
   WebAddress address{};
   std::string key{};       ///< in the caches
-  std::string identity{};  ///< in `flightOf`
+  std::string identity{};  ///< identityOf() its request
   std::vector<std::shared_ptr<Waiter>> waiters{};
   std::optional<CachedAnswer> kept{};  ///< past its lifetime
   bool isQueued = false;               ///< else it waits for the cache
   int attempts = 0;
+};
+
+/// All that are under way, by number and by identity. The network thread's.
+class Flights {
+ public:
+  using Id = RequestQueue::Id;
+
+  /// The flight of that identity, a new one if there is none, with one more waiter; and whether it is new.
+  std::pair<Id, bool> join(std::string identity, const std::shared_ptr<Waiter>& waiter);
+  /// Null: it has ended.
+  [[nodiscard]] Flight* find(Id id);
+  /// Of one that is there.
+  [[nodiscard]] Flight& at(Id id) { return byId_.at(id); }
+  /// Takes out one that is there.
+  Flight take(Id id);
+  [[nodiscard]] std::size_t size() const { return byId_.size(); }
+  /// Calls `visit(id, flight)` for each, which adds and takes none.
+  template <class Visit>
+  void forEach(const Visit& visit) const {
+    for (const auto& [id, flight] : byId_) {
+      visit(id, flight);
+    }
+  }
+
+ private:
+  std::unordered_map<Id, Flight> byId_;
+  std::unordered_map<std::string, Id> byIdentity_;
+  Id lastId_ = 0;
 };
 
 /// In the order of greatness, whatever it is.
