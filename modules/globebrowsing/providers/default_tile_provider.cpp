@@ -89,11 +89,8 @@ Result<void> checkData(const DataPath& path, const std::string& where) {
   std::error_code code;
   const std::filesystem::file_status status = std::filesystem::status(path.text, code);
   if (!std::filesystem::exists(status)) {
-    if (Result<void> checked = checkTokens(path.text, where); !checked) {
-      return checked;
-    }
-    return failure("the data file " + path.text + " does not exist", where,
-                   "check the path; a relative one starts at the asset's folder");
+    return tl::make_unexpected(
+        missing("the data file", path.text, where, "check the path; a relative one starts at the asset's folder"));
   }
   if (std::filesystem::is_directory(status)) {
     return failure("the data file " + path.text + " is a directory", where, "name a file in it");

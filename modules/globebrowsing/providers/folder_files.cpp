@@ -21,11 +21,8 @@ Result<void> checkFolder(const std::string& folder, const std::string& where) {
   std::error_code code;
   const std::filesystem::file_status status = std::filesystem::status(folder, code);
   if (!std::filesystem::exists(status)) {
-    if (Result<void> checked = checkTokens(folder, where); !checked) {
-      return checked;
-    }
-    return failure("the folder " + folder + " does not exist", where,
-                   "check the path; a relative one starts at the asset's folder");
+    return tl::make_unexpected(
+        missing("the folder", folder, where, "check the path; a relative one starts at the asset's folder"));
   }
   if (!std::filesystem::is_directory(status)) {
     return failure(folder + " is not a folder", where, "name the folder that holds the files");

@@ -128,4 +128,10 @@ Result<void> checkTokens(std::string_view text, const std::string& where) {
   return {};
 }
 
+Error missing(std::string_view what, const std::string& path, const std::string& where, std::string remedy) {
+  Result<void> checked = checkTokens(path, where);
+  return checked ? Error{fmt::format("{} {} does not exist", what, path), where, std::move(remedy)}
+                 : std::move(checked.error());
+}
+
 }  // namespace meridian::globebrowsing

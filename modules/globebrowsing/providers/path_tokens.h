@@ -26,4 +26,8 @@ using TokenFolder = std::function<std::optional<std::filesystem::path>(std::stri
 /// document only where an element's text begins with it; never in a web address, whose server may mean something by it.
 [[nodiscard]] Result<void> checkTokens(std::string_view text, const std::string& where);
 
+/// The error of a path at which nothing is: that of its token, or else "WHAT PATH does not exist" with the remedy.
+[[nodiscard]] Error missing(std::string_view what, const std::string& path, const std::string& where,
+                            std::string remedy);
+
 }  // namespace meridian::globebrowsing

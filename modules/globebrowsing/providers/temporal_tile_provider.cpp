@@ -130,11 +130,8 @@ std::string TemporalTileProvider::colormapPath() const {
 Result<void> TemporalTileProvider::check() const {
   std::error_code code;
   if (const std::string path = colormapPath(); !path.empty() && !std::filesystem::is_regular_file(path, code)) {
-    if (Result<void> checked = checkTokens(path, placeOf(request_, "Colormap")); !checked) {
-      return checked;
-    }
-    return failure("the colormap " + path + " does not exist", placeOf(request_, "Colormap"),
-                   "check Colormap; a relative path starts at the asset's folder");
+    return tl::make_unexpected(missing("the colormap", path, placeOf(request_, "Colormap"),
+                                       "check Colormap; a relative path starts at the asset's folder"));
   }
   return checkSeries();
 }
