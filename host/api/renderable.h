@@ -23,8 +23,9 @@ namespace meridian {
 /// What a scene-graph node shows. Made by a factory from an asset's `Renderable` table: cheaply, without OpenGL,
 /// network or raster reads, so that assets can be validated anywhere.
 ///
-/// All calls come on the render thread, in this order: initializeGraphics once, then per frame update once and draw
-/// once per view, then deinitializeGraphics once. update and draw never wait for disk, network or a shader compiler.
+/// All calls come on the render thread, in this order: initializeGraphics once, then per frame update once and, if it
+/// is enabled, draw once per view, then deinitializeGraphics once. update and draw never wait for disk, network or a
+/// shader compiler.
 class Renderable : public PropertyOwner {
  public:
   explicit Renderable(std::string type);

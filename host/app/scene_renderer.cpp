@@ -90,14 +90,17 @@ Result<void> SceneRenderer::draw(const Moment& moment, const navigation::Camera&
   const navigation::Viewport viewport{.size = shape.size};
   order_.clear();
   for (Item& item : items_) {
-    if (item.failed || !item.renderable->enabled.get()) {
+    if (item.failed) {
       continue;
     }
     navigation::makeViews(camera, *item.node, {&viewport, 1}, item.views);
     item.distance = camera.distanceTo(*item.node);
     frame.views = item.views;
+    // Also what is not drawn: it may hold what another needs.
     item.renderable->update(frame);
-    order_.push_back(&item);
+    if (item.renderable->enabled.get()) {
+      order_.push_back(&item);
+    }
   }
 
   if (moment.isDrawn) {
