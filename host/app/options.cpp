@@ -276,11 +276,26 @@ std::string mismatchOf(const CLI::App& app, const std::string& message, std::spa
   if (option == nullptr) {
     return message;
   }
+  if (message.ends_with(" missing")) {
+    return fmt::format("{}: expected {} after it, found nothing", name, option->get_option_text());
+  }
   const auto given = std::count_if(arguments.begin(), arguments.end(), [&](const char* argument) {
     return argument == name || std::string_view(argument).starts_with(name + "=");
   });
-  return given > 1 ? fmt::format("{}: given {} times, expected once", name, given)
-                   : fmt::format("{}: expected {} after it, found nothing", name, option->get_option_text());
+  return fmt::format("{}: given {} times, expected once", name, given);
+}
+
+/// Only options that take no value are converted by the library, and that names none of theirs.
+std::string valueOfFlag(const CLI::App& app, std::span<const char* const> arguments) {
+  for (const std::string_view argument : arguments) {
+    const std::size_t end = std::min(argument.find('='), argument.size());
+    const std::string name(argument.substr(0, end));
+    const CLI::Option* option = app.get_option_no_throw(name);
+    if (end < argument.size() && option != nullptr && option->get_items_expected_max() == 0) {
+      return fmt::format("{}: it takes no value, found '{}'; write it without '='", name, argument.substr(end + 1));
+    }
+  }
+  return "an option that takes no value has one: write it without '='";
 }
 
 EarlyExit wrongUsage(std::string text) {
@@ -303,7 +318,7 @@ std::variant<Options, EarlyExit> parseOptions(std::span<const char* const> argum
   } catch (const CLI::ArgumentMismatch& error) {
     return wrongUsage(mismatchOf(app, error.what(), arguments));
   } catch (const CLI::ConversionError&) {
-    return wrongUsage("an option that takes no value has one: write it without '='");
+    return wrongUsage(valueOfFlag(app, arguments));
   } catch (const CLI::ParseError& error) {
     return wrongUsage(error.what());
   }
