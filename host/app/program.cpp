@@ -171,9 +171,14 @@ class Show {
     return {};
   }
 
+  [[nodiscard]] std::size_t failedScripts() const { return loop_->failedScripts(); }
+
   /// Runs, and closes all files whatever happened; the first error.
   Result<void> run() {
     Result<void> result = loop_->run();
+    if (session_->hasWaitingScripts()) {
+      log::warning("a script still waits for what it asked for: what it would do next is left out");
+    }
     const auto keepFirst = [&](Result<void> next) {
       if (result) {
         result = std::move(next);
@@ -273,7 +278,7 @@ ExitCode show(Application& application, const Options& options, const std::vecto
   if (options.output) {
     log::info("written: {}", options.output->string());
   }
-  return failures == 0 ? ExitCode::Done : ExitCode::Failed;
+  return failures + show.failedScripts() == 0 ? ExitCode::Done : ExitCode::Failed;
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ glm::ivec2 RunLoop::pictureSize() const {
 }
 
 Result<void> RunLoop::frame() {
-  const auto begin = Clock::now();
+  auto begin = Clock::now();
   if (parts_.window != nullptr) {
     graphics::WindowContext::pollEvents();
     if (const bool wanted = parts_.application.renderSettings().verticalSync.get(); wanted != verticalSync_) {
@@ -76,12 +76,29 @@ Result<void> RunLoop::frame() {
   if (auto advanced = parts_.session.advance(); !advanced) {
     return advanced;
   }
+  if (awaitScripts()) {
+    begin = Clock::now();
+  }
   if (auto drawn = drawUntilSettled(begin); !drawn) {
     return drawn;
   }
   parts_.application.statistics().endFrame();
   ++frames_;
   return writePicture();
+}
+
+/// Scripts wait for a bounded time, and off screen nobody sees it pass: what they do then is in this frame already, and
+/// the program does not end before they have done it.
+bool RunLoop::awaitScripts() {
+  if (parts_.window != nullptr || !parts_.session.hasWaitingScripts()) {
+    return false;
+  }
+  while (parts_.session.hasWaitingScripts() && !isStopped()) {
+    std::this_thread::sleep_for(settlePause);
+    const std::size_t failed = parts_.session.resumeScripts();
+    failedScripts_ += frames_ == 0 ? failed : 0;
+  }
+  return true;
 }
 
 Result<void> RunLoop::drawOnce(Clock::time_point begin, double deltaSeconds, bool isDrawn) {

@@ -19,7 +19,8 @@ namespace meridian::app {
 ///
 /// Input and scripts, clock, scene transforms (Session); renderables update and draw (SceneRenderer); panels; then swap
 /// or write. With --settle a frame is drawn again, time standing still, until every view is complete or the bound has
-/// passed; only its last drawing counts in the figures.
+/// passed; only its last drawing counts in the figures. Off screen a frame that a script waits in is drawn when it has
+/// gone on.
 ///
 /// Ends after --frames; when the window is closed; when interrupted; without a window or with --output also when the
 /// recording has been played or was stopped, and without a window, --frames and --play after one frame.
@@ -39,6 +40,8 @@ class RunLoop {
   /// Errors: a frame cannot be drawn, written or, with --record, recorded; interrupted before an end that was asked
   /// for; without a window and --frames, the recording of --play was paused for good.
   [[nodiscard]] Result<void> run();
+  /// Of those begun before the first frame, how many scripts failed off screen after they had waited for something.
+  [[nodiscard]] std::size_t failedScripts() const { return failedScripts_; }
   /// To be called from within run, by input.
   void quit() { quit_ = true; }
 
@@ -46,6 +49,8 @@ class RunLoop {
   using Clock = std::chrono::steady_clock;
 
   [[nodiscard]] Result<void> frame();
+  /// Whether any had to be awaited.
+  bool awaitScripts();
   [[nodiscard]] Result<void> drawOnce(Clock::time_point begin, double deltaSeconds, bool isDrawn = true);
   [[nodiscard]] Result<void> drawUntilSettled(Clock::time_point begin);
   /// How long a frame may wait until it is complete; 0: it does not.
@@ -62,6 +67,7 @@ class RunLoop {
   ui::Caption caption_;
   std::uint64_t frames_ = 0;    ///< done
   std::uint64_t drawings_ = 0;  ///< of them, with those of --settle
+  std::size_t failedScripts_ = 0;
   Clock::time_point lastTold_ = Clock::now();
   bool quit_ = false;
   bool hasTimedOut_ = false;  ///< a frame was not complete in time

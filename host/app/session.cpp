@@ -46,15 +46,17 @@ Result<void> Session::advance() {
   return record(seconds);
 }
 
-void Session::resumeScripts() {
+std::size_t Session::resumeScripts() {
   if (!hasWaitingScripts()) {
-    return;
+    return 0;
   }
-  for (const Error& error : application_.scripts().resumeWaiting()) {
+  const std::vector<Error> errors = application_.scripts().resumeWaiting();
+  for (const Error& error : errors) {
     log::error("{}", error.message());
   }
   // They may have set the time, or moved nodes.
   application_.scene().evaluate(application_.clock().time());
+  return errors.size();
 }
 
 Result<void> Session::checkPlayback() const {

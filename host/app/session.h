@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -27,8 +28,8 @@ class Session {
   /// start. Errors: what `--record` names cannot be written any more; a recording that a script began ends then, and
   /// nothing else does.
   [[nodiscard]] Result<void> advance();
-  /// Scripts that waited for something go on, also between two drawings of a frame.
-  void resumeScripts();
+  /// Scripts that waited for something go on, also between two drawings of a frame. How many of them failed.
+  std::size_t resumeScripts();
   /// Whether one still waits.
   [[nodiscard]] bool hasWaitingScripts() const { return application_.scripts().hasWaiting(); }
   /// Lifts a camera that no recording moves out of terrain that was loaded since `advance`. Whether that moved it.

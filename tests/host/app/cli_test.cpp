@@ -253,6 +253,31 @@ TEST_F(CommandLine, SettingsAndScriptsReachTheScene) {
   EXPECT_THAT(outcome.errors, HasSubstr("2026-03-20T14:46:00"));
 }
 
+TEST_F(CommandLine, ScriptsThatWaitHaveGoneOnBeforeThePictureAndTheEnd) {
+  emptyScene();
+  write("capabilities.xml",
+        "<WMS_Capabilities version='1.3.0'><Capability><Request><GetMap><Format>image/png</Format><DCPType><HTTP><Get>"
+        "<OnlineResource xmlns:xlink='http://www.w3.org/1999/xlink' xlink:href='http://localhost:1/'/></Get></HTTP>"
+        "</DCPType></GetMap></Request><Layer><Layer><Name>ice</Name><CRS>EPSG:4326</CRS><EX_GeographicBoundingBox>"
+        "<westBoundLongitude>-180</westBoundLongitude><eastBoundLongitude>180</eastBoundLongitude>"
+        "<southBoundLatitude>-90</southBoundLatitude><northBoundLatitude>90</northBoundLatitude>"
+        "</EX_GeographicBoundingBox></Layer></Layer></Capability></WMS_Capabilities>");
+  const std::string load = "openspace.globebrowsing.loadWMSCapabilities('s', 'Earth', '" +
+                           in("capabilities.xml").string() + "')\n" +
+                           "openspace.printInfo('offered ' .. #openspace.globebrowsing.capabilitiesWMS('s'))\n";
+  write("load.lua", load);
+  write("fail.lua", load + "error('too late')\n");
+  for (const char* arguments : {"", "--frames 1 --settle 0", "--output picture.png"}) {
+    const Outcome outcome = run(std::string("empty.asset --headless --size 8x8 --script load.lua ") + arguments);
+    EXPECT_EQ(outcome.code, 0) << arguments;
+    EXPECT_THAT(outcome.errors, HasSubstr("offered 1")) << arguments;
+    EXPECT_THAT(outcome.errors, Not(HasSubstr("not complete"))) << arguments;
+  }
+  const Outcome failed = run("empty.asset --headless --size 8x8 --frames 3 --script fail.lua");
+  EXPECT_EQ(failed.code, 1);
+  EXPECT_THAT(failed.errors, HasSubstr("too late"));
+}
+
 TEST_F(CommandLine, WhatTheSceneRefusesFails) {
   emptyScene();
   write("bad.lua", "error('oops')\n");
