@@ -201,6 +201,9 @@ void RenderableGlobe::updateSurfaces(const FrameContext& frame, TexturePoolShare
   };
   if (!surface_) {
     surface_ = makeSurface(wanted);
+    if (surface_) {
+      surface_->setShown();
+    }
     pool_ = wanted;
     hold();
   } else if (wanted == pool_) {
@@ -221,6 +224,7 @@ void RenderableGlobe::updateSurfaces(const FrameContext& frame, TexturePoolShare
     // A server that is down must not keep this globe from its share, nor from giving it up.
     if (replacement_->settled(0).complete || replacement_->filled()) {
       surface_ = std::move(replacement_);
+      surface_->setShown();
       pool_ = replacementPool_;
       hold();
     }

@@ -51,9 +51,9 @@ void CompositeStore::beginFrame(std::uint64_t frame) {
   updateMixing();
   for (const CompositeKind kind : allCompositeKinds) {
     // Where nothing is drawn the last step is finished first as well, or a surface that is still filled never would be.
-    // One that was never drawn keeps it: whoever waits for it to be filled takes it at any time.
+    // One that is not shown yet keeps it: whoever waits for it to be filled takes it at any time.
     const bool mayBegin = !of(kind).drawn.empty() || !lackedSome_;
-    generations(kind).follow(interpolates_ && fading_ == kind, {mayBegin, mayBegin && wasDrawn_});
+    generations(kind).follow(interpolates_ && fading_ == kind, {mayBegin, mayBegin && isShown_});
   }
 }
 
@@ -192,7 +192,7 @@ bool CompositeStore::nextCovers(CompositeKind kind) const {
     return stateOf(nextKey(kind, tile.index, tile.colourLevel)).present;
   };
   const std::vector<CompositeGathering::Drawn>& drawn = of(kind).drawn;
-  if (!wasDrawn_ && !generations(kind).pair().isHeld) {
+  if (!isShown_ && !generations(kind).pair().isHeld) {
     return generations(kind).pair().isMixed;  // no other has been wanted as a whole
   }
   for (int root = 0; root < tiling_->rootCount(); ++root) {
@@ -295,7 +295,6 @@ CompositeStore::Composed CompositeStore::composeOne(const CompositeGathering::Qu
 }
 
 void CompositeStore::beginDrawing() {
-  wasDrawn_ = true;
   if (isDrawnOld_) {
     isDrawnOld_ = false;
     for (Kind& kind : kinds_) {
@@ -344,7 +343,6 @@ std::optional<CompositeStore::Placement> CompositeStore::placeAt(const Composite
 std::string CompositeStore::waitingFor() const {
   for (const CompositeKind kind : allCompositeKinds) {
     const CompositeGenerations& generations = this->generations(kind);
-    const bool isDrawn = !of(kind).drawn.empty();  // a surface that is still filled is not
     if (generations.isOutdated(kind, layers_)) {
       return "layers have changed";
     }
@@ -356,11 +354,12 @@ std::string CompositeStore::waitingFor() const {
       if (layer.awaitsData()) {
         return fmt::format("{} is being opened", layer.uri());
       }
-      if (isDrawn && !generations.pair().isHeld && layer.step() != generations.shown().steps[i]) {
+      if (isShown_ && !generations.pair().isHeld && layer.step() != generations.shown().steps[i]) {
         return fmt::format("{} shows another time", layer.uri());
       }
     }
-    if (isDrawn && generations.interpolated() != nullptr && !generations.pair().isMixed && kindBetweenSteps() == kind) {
+    if (isShown_ && generations.interpolated() != nullptr && !generations.pair().isMixed &&
+        kindBetweenSteps() == kind) {
       return fmt::format("{} shows one of two times", generations.interpolated()->uri());
     }
     if (inUse(kind) && composer_->programs().isOwnPending(kind)) {

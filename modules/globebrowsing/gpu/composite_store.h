@@ -44,6 +44,9 @@ class CompositeStore {
   CompositeStore(std::shared_ptr<const Tiling> tiling, LayerManager& layers, TileStreamer& streamer,
                  std::unique_ptr<Composer> composer, std::uint32_t capacity);
 
+  /// What it has is drawn from now on, or would be: it no longer belongs to a surface that is filled in place of
+  /// another.
+  void setShown() { isShown_ = true; }
   void beginFrame(std::uint64_t frame);
   void endFrame();
 
@@ -177,7 +180,7 @@ class CompositeStore {
   bool interpolates_ = false;  ///< `fading_` is mixed because it is between two steps in time
   std::optional<CompositeKind> mixing_;
   bool isDrawnOld_ = true;  ///< what kinds have in `drawn` is of an earlier frame
-  bool wasDrawn_ = false;   ///< ever: a surface that is filled in place of another is not
+  bool isShown_ = false;
   bool drewMixed_ = false;  ///< since the last beginFrame()
   bool mixedLast_ = false;  ///< in the last frame
   std::uint64_t composedCount_ = 0;

@@ -24,6 +24,7 @@ class ChunkedSurface final : public Surface {
   /// Errors: shader templates missing or wrong.
   [[nodiscard]] static Result<std::unique_ptr<ChunkedSurface>> create(Parts parts, const GlobeTiles::Options& options);
 
+  void setShown() override { tiles_->composites().setShown(); }
   void update(const FrameContext& frame, const SurfaceSettings& settings) override;
   void draw(const FrameContext& frame, std::size_t view) override;
   [[nodiscard]] Settled settled(std::size_t view) const override;

@@ -29,12 +29,14 @@ class Surface {
  public:
   virtual ~Surface() = default;
 
+  /// From now on it is the one that its globe draws, no longer one that is filled to take another's place.
+  virtual void setShown() = 0;
   virtual void update(const FrameContext& frame, const SurfaceSettings& settings) = 0;
   virtual void draw(const FrameContext& frame, std::size_t view) = 0;
   /// Of the last frame's view of that number.
   [[nodiscard]] virtual Settled settled(std::size_t view) const = 0;
 
-  /// Whether all that the last frame wanted is drawn, if only without what is late.
+  /// Whether all that the last frame wanted and there is room for is drawn, if only without what is late.
   [[nodiscard]] virtual bool filled() const = 0;
 
   /// Of the textures and buffers that hold something.

@@ -109,6 +109,18 @@ TEST_F(InterpolationTest, ShowsTheMixtureOfTwoSteps) {
   EXPECT_EQ(layer(globe, "D").lastError.get(), "");
 }
 
+TEST_F(InterpolationTest, TheFirstPictureOffScreenIsMixed) {
+  time_ = at(0.5);
+  addReadyGlobe({{"ColorLayers", listOf({daily("D", {}, 1024)})}});
+  // Again, with the programs there before the data.
+  removeGlobes();
+  addGlobe({{"ColorLayers", listOf({series("D", {})})}});
+  ASSERT_TRUE(framesUntil([&] { return unsettled().empty(); }, false)) << unsettled();
+  frame();
+  EXPECT_EQ(unsettled(), "");
+  EXPECT_LE(difference(centre(), mixtureAt(0.5)), 1);
+}
+
 TEST_F(InterpolationTest, GoesOnSmoothlyForwardsAndBackwards) {
   time_ = at(0.0);
   addReadyGlobe({{"ColorLayers", listOf({daily("D")})}});

@@ -197,6 +197,21 @@ TEST_F(TimeStepsTest, SettlesInFramesThatAreNotDrawn) {
   }
 }
 
+// A script may set the time while the first picture of a film is waited for.
+TEST_F(TimeStepsTest, GoesOnBeforeAnythingWasDrawn) {
+  time_ = dayOf(1);
+  look(0.1, 0.2, 9e6);
+  addGlobe({{"ColorLayers", listOf({monthly("M", 2048, {}, 2)})}});
+  ASSERT_TRUE(framesUntil([&] { return unsettled().empty(); }, false)) << unsettled();
+  time_ = dayOf(2);
+  frame(false);
+  EXPECT_NE(unsettled(), "");
+  ASSERT_TRUE(framesUntil([&] { return unsettled().empty(); }, false)) << unsettled();
+  frame();
+  EXPECT_EQ(unsettled(), "");
+  EXPECT_EQ(seen(), std::vector<int>{2});
+}
+
 TEST_F(TimeStepsTest, TheNextTimeIsFilledInFramesThatAreNotDrawn) {
   time_ = dayOf(1);
   look(0.1, 0.2, 9e6);
