@@ -82,6 +82,8 @@ class ChunkTree::Implementation {
  private:
   void selectFromRoots();
   [[nodiscard]] bool isSpent() const { return figures_.visited >= settings_.mostVisited; }
+  /// Whether coarsening is about to fall: the selection has become small.
+  [[nodiscard]] bool hasRoomForFiner() const;
   /// Selects what covers the node; false when something in it cannot be drawn.
   bool visit(NodeNumber number);
   bool visitTarget(NodeNumber number, const Demand& demand);
@@ -147,7 +149,7 @@ void ChunkTree::Implementation::select(std::span<const SelectionView> views, con
   ++frame_;
   settings_ = inRange(settings);
   residency_ = &residency;
-  if (coarsening_ > 1.0 && frame_ % finerEvery == 0 && figures_.visited < settings_.mostVisited / small) {
+  if (frame_ % finerEvery == 0 && hasRoomForFiner()) {
     coarsening_ = std::max(1.0, finer * coarsening_);
   }
   views_.prepare(views, settings_, tiling_.ellipsoid().radii());
@@ -174,7 +176,11 @@ void ChunkTree::Implementation::selectFromRoots() {
       covered = visit(root) && covered;
     }
   }
-  figures_.atTarget = covered && figures_.missing == 0 && !provisional_ && !cutShort_;
+  figures_.atTarget = covered && figures_.missing == 0 && !provisional_ && !cutShort_ && !hasRoomForFiner();
+}
+
+bool ChunkTree::Implementation::hasRoomForFiner() const {
+  return coarsening_ > 1.0 && figures_.visited < settings_.mostVisited / small;
 }
 
 void ChunkTree::Implementation::updateBounds(ChunkNode& node) {

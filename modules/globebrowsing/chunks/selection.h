@@ -55,7 +55,7 @@ struct SelectionFigures {
   std::uint32_t culledFrustum = 0;
   std::uint32_t culledHorizon = 0;
   std::uint32_t kicked = 0;   ///< chunks drawn in place of replacements that are incomplete
-  bool atTarget = false;      ///< every chunk drawn is the one that settings and coarsening ask for, and complete
+  bool atTarget = false;      ///< every chunk drawn is complete and what settings ask for with a coarsening that stays
   double coarsening = 1.0;    ///< errors allowed are that many times those of the settings: more than 1 at mostVisited
   std::uint32_t missing = 0;  ///< target chunks that are not complete
 };

@@ -106,7 +106,8 @@ void ChunkedSurface::draw(const FrameContext& frame, std::size_t view) {
 }
 
 bool ChunkedSurface::filled() const {
-  return renderer_.programs().ready() && tiles_->filled() && tree_.figures().atTarget;
+  // A pool that is too small stays as it is, with what is late as well.
+  return renderer_.programs().ready() && (tiles_->full() || (tiles_->filled() && tree_.figures().atTarget));
 }
 
 Settled ChunkedSurface::settled(std::size_t /*view*/) const {
@@ -130,7 +131,8 @@ Settled ChunkedSurface::settled(std::size_t /*view*/) const {
     return {true, std::string(tooSmallPool)};
   }
   if (!tree_.figures().atTarget) {
-    return {false, fmt::format("{} chunks are not at their target", tree_.figures().missing)};
+    const std::uint32_t missing = tree_.figures().missing;
+    return {false, missing > 0 ? fmt::format("{} chunks are not at their target", missing) : "chunks become finer"};
   }
   if (tree_.figures().coarsening > 1.0) {
     return {true, std::string(tooManyChunks)};
