@@ -144,27 +144,29 @@ Result<ServiceDescription> describeWmtsDocument(const XmlDocument& document) {
 /// The server's word counts for all that the document says besides: it is there for programs that read no capabilities.
 CapabilitiesReference referenceOfMaps(const pugi::xml_node& root) {
   const pugi::xml_node service = child(root, "Service");
+  // GDAL puts them into its addresses as they stand, so that they are written as addresses have them.
+  const auto name = [&](std::string_view element) { return percentDecoded(text(service, element)); };
   CapabilitiesReference reference;
   reference.kind = CapabilitiesKind::Wms;
   reference.url = repairedUrl(text(root, "GetCapabilitiesUrl"));
-  reference.layer = text(service, "Layers");
-  reference.choices.style = text(service, "Styles");
-  reference.choices.format = text(service, "ImageFormat");
-  reference.choices.crs = text(service, "CRS").empty() ? text(service, "SRS") : text(service, "CRS");
+  reference.layer = name("Layers");
+  reference.choices.style = name("Styles");
+  reference.choices.format = name("ImageFormat");
+  reference.choices.crs = name("CRS").empty() ? name("SRS") : name("CRS");
   reference.choices.isTransparent = boolean(text(service, "Transparent")).value_or(false);
   const std::string server = text(service, "ServerUrl");
   const std::size_t query = std::min(server.find('?'), server.size());
   for (const std::string& part : split(server.substr(std::min(query + 1, server.size())), "&")) {
     const std::size_t equals = std::min(part.find('='), part.size());
-    const std::string name = percentDecoded(part.substr(0, equals));
+    const std::string parameter = percentDecoded(part.substr(0, equals));
     const std::string value = percentDecoded(part.substr(std::min(equals + 1, part.size())));
-    if (name.empty() || isGetMapParameter(name)) {
+    if (parameter.empty() || isGetMapParameter(parameter)) {
       continue;
     }
-    if (equalIgnoringCase(name, "time")) {
+    if (equalIgnoringCase(parameter, "time")) {
       reference.choices.time = value;
     } else {
-      reference.choices.parameters.emplace_back(name, value);
+      reference.choices.parameters.emplace_back(parameter, value);
     }
   }
   return reference;
