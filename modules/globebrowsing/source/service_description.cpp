@@ -206,7 +206,7 @@ Result<ServiceDescription> describeDocument(const std::string& content, const So
 
 /// A GetMap request tells the layer, the CRS and the extent, and that is all it takes.
 Result<ServiceDescription> describeGetMap(const std::string& url, const std::string& where) {
-  const auto parameter = [&](std::string_view name) { return parameterOf(url, name).value_or(""); };
+  const auto parameter = [&](std::string_view name) { return percentDecoded(parameterOf(url, name).value_or("")); };
   ServiceDescription result;
   const std::string layers = parameter("layers");
   if (layers.empty()) {
@@ -219,15 +219,15 @@ Result<ServiceDescription> describeGetMap(const std::string& url, const std::str
   capabilities.url = where;
   capabilities.mapAddress = url;
   CapabilitiesLayer layer;
-  layer.identifier = replaceAll(replaceAll(layers, "%2C", ","), "%20", " ");
+  layer.identifier = layers;
   layer.title = layer.identifier;
-  std::string crs = replaceAll(parameter("crs").empty() ? parameter("srs") : parameter("crs"), "%3A", ":");
+  std::string crs = parameter("crs").empty() ? parameter("srs") : parameter("crs");
   crs = crs.empty() ? "EPSG:4326" : crs;
   layer.crs = CrsNames({crs});
-  if (const std::string format = replaceAll(parameter("format"), "%2F", "/"); !format.empty()) {
+  if (const std::string format = parameter("format"); !format.empty()) {
     layer.formats = {format};
   }
-  const std::vector<std::string> box = split(replaceAll(parameter("bbox"), "%2C", ","), ",");
+  const std::vector<std::string> box = split(parameter("bbox"), ",");
   const auto known = MapCrs::of(crs, where);
   if (!known) {
     return tl::make_unexpected(known.error());
@@ -241,7 +241,7 @@ Result<ServiceDescription> describeGetMap(const std::string& url, const std::str
   }
   LayerChoices choices;
   choices.isTransparent = boolean(parameter("transparent")).value_or(false);
-  if (const std::string style = replaceAll(parameter("styles"), "%2C", ","); !style.empty()) {
+  if (const std::string style = parameter("styles"); !style.empty()) {
     layer.styles = {{style}};
     choices.style = style;
   }

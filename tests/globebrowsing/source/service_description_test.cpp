@@ -218,6 +218,20 @@ TEST(ServiceDescription, GetMapAddressesAreLayers) {
   EXPECT_NEAR(three.service->north, 30.0, 1e-9);
 }
 
+TEST(ServiceDescription, EscapesInGetMapAddressesAreReadOnce) {
+  const ServiceDescription escaped = describe(
+      "WMS:http://h/w?VERSION=1.1.1&LAYERS=ns%3Aice%2cfog%20a&STYLES=boxfill%2Frainbow%2C&SRS=EPSG%3a4326&"
+      "BBOX=%2D10%2c20%2C30%2C60&FORMAT=image%2fpng&TRANSPARENT=TRUE");
+  ASSERT_TRUE(escaped.service);
+  EXPECT_NEAR(escaped.service->west, -10.0, 1e-9);
+  EXPECT_NEAR(escaped.service->north, 60.0, 1e-9);
+  const std::string url = escaped.service->url({0, 0, 0});
+  for (const char* part :
+       {"LAYERS=ns%3Aice%2Cfog%20a&", "STYLES=boxfill%2Frainbow%2C&", "SRS=EPSG:4326&", "FORMAT=image/png&"}) {
+    EXPECT_NE(url.find(part), std::string::npos) << part << " in " << url;
+  }
+}
+
 TEST(ServiceDescription, RealVrtsNeedTheirSibling) {
   const std::string path = sharedData("gdal_wms_xml/earth/moon/nasa-treks/LRO_LROC_DEM/Marius_Hills.vrt");
   MERIDIAN_NEEDS(path);
