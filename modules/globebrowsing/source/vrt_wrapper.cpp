@@ -1,9 +1,11 @@
 #include "globebrowsing/source/vrt_wrapper.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "globebrowsing/source/service_text.h"
+#include "globebrowsing/source/tile_pyramid.h"
 #include "globebrowsing/source/xml_document.h"
 
 namespace meridian::globebrowsing {
@@ -177,6 +179,8 @@ Result<VrtDescription> readVrtWrapper(const std::string& content, const std::str
   wrapper.pixelHeight = -affine[5] * first->to[3] / first->from[3];
   wrapper.left = affine[0] + affine[1] * first->to[0];
   wrapper.top = affine[3] + affine[5] * first->to[1];
+  wrapper.right = affine[0] + affine[1] * (first->to[0] + first->to[2]);
+  wrapper.bottom = affine[3] + affine[5] * (first->to[1] + first->to[3]);
   return VrtDescription{std::move(wrapper), {}};
 }
 
@@ -190,6 +194,15 @@ std::optional<TileService> wrapped(const VrtWrapper& wrapper, TileService inner)
   if (!isSame(wrapper.pixelWidth, finest.pixelWidth, 1e-6 * finest.pixelWidth) ||
       !isSame(wrapper.pixelHeight, finest.pixelHeight, 1e-6 * finest.pixelHeight) ||
       !isSame(wrapper.left, finest.left, 1e-6 * span) || !isSame(wrapper.top, finest.top, 1e-6 * span)) {
+    return std::nullopt;
+  }
+  // The service may end sooner: windows of GIBS run beyond the globe.
+  const Extent shown{inner.west, std::max(inner.south, wrapper.bottom), std::min(inner.east, wrapper.right),
+                     inner.north};
+  const bool isPart = inner.east - shown.east > 1e-6 * span || shown.south - inner.south > 1e-6 * span;
+  const std::size_t levels = inner.matrices.size();
+  // Its addresses count the levels, so that none may go.
+  if (isPart && (!setMatrices(inner, inner.matrices, shown) || inner.matrices.size() != levels)) {
     return std::nullopt;
   }
   inner.bands = wrapper.bands;

@@ -126,6 +126,33 @@ TEST_F(VrtTools, WhatBuildvrtWritesIsTheService) {
   EXPECT_EQ(describe("over.vrt").service->heightOffset, 10.0);
 }
 
+TEST_F(VrtTools, OfAServiceThatIsCroppedOnlyThatPartIsThere) {
+  translate("a.wms", "quarter.vrt", {"-projwin", "-180", "90", "0", "0"});
+  const ServiceDescription quarter = describe("quarter.vrt");
+  ASSERT_TRUE(quarter.service) << quarter.reason;
+  EXPECT_EQ(quarter.service->west, -180.0);
+  EXPECT_EQ(quarter.service->south, 0.0);
+  EXPECT_EQ(quarter.service->east, 0.0);
+  EXPECT_EQ(quarter.service->north, 90.0);
+  EXPECT_EQ(quarter.service->matrices.size(), 4U);
+  EXPECT_EQ(quarter.service->matrices.front().lastColumn, 7);
+  EXPECT_EQ(quarter.service->matrices.front().lastRow, 3);
+  EXPECT_EQ(quarter.service->url({0, 5, 2}), "http://127.0.0.1:9/3/5/2.png");
+  EXPECT_EQ(quarter.service->url({3, 0, 0}), "http://127.0.0.1:9/0/0/0.png");
+  translate("a.wms", "window.vrt", {"-srcwin", "0", "0", "300", "2048"});
+  const ServiceDescription window = describe("window.vrt");
+  ASSERT_TRUE(window.service) << window.reason;
+  EXPECT_NEAR(window.service->east, -180.0 + 300 * 360.0 / 4096, 1e-9);
+  EXPECT_EQ(window.service->south, -90.0);
+  EXPECT_EQ(window.service->matrices.front().lastColumn, 1);
+  translate("a.wms", "whole.vrt", {});
+  EXPECT_EQ(describe("whole.vrt").service->east, 180.0);
+  EXPECT_EQ(describe("whole.vrt").service->matrices.front().lastColumn, 15);
+  translate("quarter.vrt", "eighth.vrt", {"-srcwin", "0", "0", "1024", "1024"});
+  ASSERT_TRUE(describe("eighth.vrt").service) << describe("eighth.vrt").reason;
+  EXPECT_EQ(describe("eighth.vrt").service->east, -90.0);
+}
+
 TEST_F(VrtTools, WhatAServiceCannotSayIsLeftToGdal) {
   build("a.wms", "differ.vrt", {"-srcnodata", "0 1 2"});
   EXPECT_FALSE(describe("differ.vrt").service);
