@@ -93,6 +93,21 @@ struct Source {
 
 Result<ServiceDescription> describe(const Source& source);
 
+/// Whether a VRT shows all of the document that it wraps where it is, and as it is, so that the capabilities which that
+/// names may count in its place. What they will say of the place is not known yet; a <GDAL_WMS> has a window besides.
+bool showsAllAsItIs(const VrtWrapper& wrapper, const std::string& path) {
+  if (wrapper.noData || wrapper.makesAlpha || wrapper.scale || wrapper.offset || wrapper.isPart) {
+    return false;
+  }
+  const std::optional<std::string> document = isDocument(path) ? path : documentIn(path);
+  const auto window = document ? readGdalWms(*document, path) : Result<GdalDescription>();
+  if (!window || !window->service) {
+    return true;
+  }
+  const std::optional<TileService> shown = wrapped(wrapper, *window->service);
+  return shown && shown->east == window->service->east && shown->south == window->service->south;
+}
+
 Result<ServiceDescription> describeVrt(const std::string& content, const Source& source, const std::string& folder) {
   auto read = readVrtWrapper(content, source.where);
   if (!read) {
@@ -109,8 +124,8 @@ Result<ServiceDescription> describeVrt(const std::string& content, const Source&
   const std::string path =
       isFile && wrapper.isRelative ? (std::filesystem::path(folder) / inner).lexically_normal().string() : inner;
   auto described = describe({path, isFile ? path : source.where, source.nesting + 1, source.settings});
-  if (described && described->reference && (wrapper.declaresNoData || wrapper.scale || wrapper.offset)) {
-    result.reason = "the VRT says of a layer of capabilities what its values mean";
+  if (described && described->reference && !showsAllAsItIs(wrapper, path)) {
+    result.reason = "the VRT says of a layer of capabilities what its values mean or where it is";
     return result;
   }
   if (!described || !described->service) {

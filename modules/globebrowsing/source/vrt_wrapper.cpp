@@ -23,6 +23,7 @@ struct Band {
   std::optional<double> offset{};
   std::array<double, 4> from{};  ///< x, y, width, height
   std::array<double, 4> to{};
+  bool isPart = false;  ///< `from` is less than all of the source
 };
 
 std::optional<std::array<double, 4>> rectangle(const pugi::xml_node& node) {
@@ -86,6 +87,9 @@ std::optional<Band> readBand(const pugi::xml_node& node) {
   band.number = static_cast<int>(integer(text(source, "SourceBand")).value_or(1));
   band.from = *from;
   band.to = *to;
+  const pugi::xml_node size = child(source, "SourceProperties");
+  band.isPart = (*from)[2] < number(attribute(size, "RasterXSize")).value_or(0.0) ||
+                (*from)[3] < number(attribute(size, "RasterYSize")).value_or(0.0);
   band.noData = number(text(source, "NODATA"));
   const bool isAlpha = equalIgnoringCase(text(node, "ColorInterp"), "Alpha");
   for (const pugi::xml_node& part : source.children()) {
@@ -169,7 +173,6 @@ Result<VrtDescription> readVrtWrapper(const std::string& content, const std::str
   }
   if (first->declared) {
     wrapper.noData = first->declared;
-    wrapper.declaresNoData = true;
   }
   wrapper.scale = first->scale;
   wrapper.offset = first->offset;
@@ -179,6 +182,7 @@ Result<VrtDescription> readVrtWrapper(const std::string& content, const std::str
   wrapper.pixelHeight = -affine[5] * first->to[3] / first->from[3];
   wrapper.left = affine[0] + affine[1] * first->to[0];
   wrapper.top = affine[3] + affine[5] * first->to[1];
+  wrapper.isPart = first->isPart;
   wrapper.right = affine[0] + affine[1] * (first->to[0] + first->to[2]);
   wrapper.bottom = affine[3] + affine[5] * (first->to[1] + first->to[3]);
   return VrtDescription{std::move(wrapper), {}};

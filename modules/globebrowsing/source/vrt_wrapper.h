@@ -16,7 +16,6 @@ struct VrtWrapper {
   int bands = 0;            ///< without the alpha that the VRT makes
   std::optional<double> noData{};
   bool makesAlpha = false;
-  bool declaresNoData = false;    ///< noData is of the VRT's own bands (NoDataValue)
   std::optional<double> scale{};  ///< of band 1, whose values are heights
   std::optional<double> offset{};
   // Where the VRT puts the first pixel of the inner raster, and its pixels' size, in its own units.
@@ -27,6 +26,7 @@ struct VrtWrapper {
   // Where what it shows of the inner raster ends.
   double right = 0.0;
   double bottom = 0.0;
+  bool isPart = false;  ///< by the VRT's own account of the inner raster's size
 };
 
 /// What a VRT turned out to be. Without `wrapper` it is GDAL's, and `reason` says why.

@@ -168,5 +168,29 @@ TEST_F(VrtTools, WhatAServiceCannotSayIsLeftToGdal) {
   EXPECT_THAT(describe("series.vrt").reason, HasSubstr("capabilities"));
 }
 
+TEST_F(VrtTools, OfALayerOfCapabilitiesAllIsPassedOnOrNothing) {
+  write("series.wms", "<GetCapabilitiesUrl>http://127.0.0.1:9/wms</GetCapabilitiesUrl>");
+  translate("series.wms", "plain.vrt", {});
+  EXPECT_TRUE(describe("plain.vrt").reference) << describe("plain.vrt").reason;
+  build("series.wms", "built.vrt", {"-srcnodata", "0"});
+  translate("series.wms", "none.vrt", {"-a_nodata", "0"});
+  translate("series.wms", "part.vrt", {"-projwin", "-180", "90", "0", "0"});
+  translate("series.wms", "moved.vrt", {"-a_ullr", "-90", "45", "90", "-45"});
+  std::ofstream(path("alpha.vrt"))
+      << R"(<VRTDataset rasterXSize="4096" rasterYSize="2048"><GeoTransform>-180,0.087890625,0,90,0,-0.087890625
+         </GeoTransform><VRTRasterBand band="1"><SimpleSource><SourceFilename relativeToVRT="1">series.wms
+         </SourceFilename><SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="4096" ySize="2048"/><DstRect
+         xOff="0" yOff="0" xSize="4096" ySize="2048"/></SimpleSource></VRTRasterBand><VRTRasterBand band="2">
+         <ColorInterp>Alpha</ColorInterp><ComplexSource><SourceFilename relativeToVRT="1">series.wms</SourceFilename>
+         <SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="4096" ySize="2048"/><DstRect xOff="0" yOff="0"
+         xSize="4096" ySize="2048"/><ScaleOffset>255</ScaleOffset><ScaleRatio>0</ScaleRatio><NODATA>0</NODATA>
+         </ComplexSource></VRTRasterBand></VRTDataset>)";
+  for (const char* name : {"built.vrt", "none.vrt", "part.vrt", "moved.vrt", "alpha.vrt"}) {
+    const ServiceDescription described = describe(name);
+    EXPECT_FALSE(described.reference || described.service) << name;
+    EXPECT_THAT(described.reason, HasSubstr("capabilities")) << name;
+  }
+}
+
 }  // namespace
 }  // namespace meridian::globebrowsing
