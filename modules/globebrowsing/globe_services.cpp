@@ -39,6 +39,7 @@ GlobeServices::GlobeServices(PropertyOwner& owner, Statistics& statistics, const
                                  }})),
       capabilities_(workers_, fetcher_),
       streamer_(workers_, statistics),
+      cacheMode_(network.cache.mode),
       network_(owner, network, [this](const NetworkOptions& options) { setNetwork(options); }) {
   for (Property* property : std::initializer_list<Property*>{&tileCacheSize, &texturePoolSize, &compositionBudget}) {
     owner.addProperty(*property);
@@ -55,8 +56,13 @@ GlobeServices::GlobeServices(PropertyOwner& owner, Statistics& statistics, const
 
 void GlobeServices::setNetwork(const NetworkOptions& options) {
   fetcher_->setOptions(options);
-  *imageLimits_ = options.images;
+  const ImageLimits images = imageLimits_->exchange(options.images);
+  const CacheMode mode = std::exchange(cacheMode_, options.cache.mode);
   setGdalNetwork(options);
+  if ((mode == CacheMode::CacheOnly && cacheMode_ != mode) || options.images.side > images.side ||
+      options.images.pixels > images.pixels) {
+    ++timesAllowed_;
+  }
 }
 
 GlobeServices::~GlobeServices() {

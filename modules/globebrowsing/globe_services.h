@@ -47,6 +47,10 @@ class GlobeServices {
   void setTokenFolder(TokenFolder folderOf) { tokenFolder_ = std::move(folderOf); }
   [[nodiscard]] const TokenFolder& tokenFolder() const { return tokenFolder_; }
 
+  /// Grows when the network's settings allow what they did not before, so that what failed may succeed now: servers are
+  /// asked again, or larger images decoded. Globes then try again.
+  [[nodiscard]] std::uint64_t timesAllowed() const { return timesAllowed_; }
+
   /// Every globe calls this first in its update: the first call of a frame ends the last frame of the streamer and
   /// begins the next, so that what no globe asked for is cancelled, and empties the gauges that globes add to:
   /// chunks and texture pool.
@@ -75,6 +79,8 @@ class GlobeServices {
   TileStreamer streamer_;
   TexturePoolShares poolShares_;
   TokenFolder tokenFolder_;
+  CacheMode cacheMode_;
+  std::uint64_t timesAllowed_ = 0;
   NetworkProperties network_;
   std::uint64_t frame_ = ~std::uint64_t{0};
 };

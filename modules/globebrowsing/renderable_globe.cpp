@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -76,7 +77,8 @@ RenderableGlobe::RenderableGlobe(std::shared_ptr<const Tiling> tiling, GlobeServ
       tiling_(std::move(tiling)),
       services_(services),
       layers_({&services.workers(), &services.streamer(), services.sourceTiles(), tiling_->ellipsoid().heightLimits(),
-               services.tokenFolder()}) {
+               services.tokenFolder()}),
+      seenTimesAllowed_(services.timesAllowed()) {
   addProperties();
 }
 
@@ -260,6 +262,9 @@ void RenderableGlobe::update(const FrameContext& frame) {
   inView_ = drawn_ && isInView(frame);
   if (drawn_) {
     framesUnseen_ = 0;
+    if (std::exchange(seenTimesAllowed_, services_.timesAllowed()) != services_.timesAllowed()) {
+      layers_.retryFailed();
+    }
     layers_.update(frame.time);
     const std::optional<TexturePoolShares::Share> share = services_.poolShares().bid(this, radius);
     if (share && surfaceError_.empty()) {

@@ -114,6 +114,7 @@ class RenderableGlobe final : public Renderable, public Ground {
   bool drawn_ = false;        ///< in this frame
   bool inView_ = false;       ///< likewise: drawn, and not beside the picture
   int framesUnseen_ = 0;
+  std::uint64_t seenTimesAllowed_;  ///< of services_
 };
 
 }  // namespace meridian::globebrowsing

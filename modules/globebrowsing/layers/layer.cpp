@@ -237,6 +237,11 @@ void Layer::restart(ProviderRequest request) {
   changed_(*this, Change::Settings);
 }
 
+void Layer::retryFailed() {
+  wantsRestart_ = wantsRestart_ || provider_->state() == TileProvider::State::Failed ||
+                  (step_ != nullptr && step_->hasFailed()) || player_.hasFailed();
+}
+
 void Layer::update(const Time& now) {
   if (std::exchange(wantsRestart_, false)) {
     ProviderRequest request = request_;

@@ -109,6 +109,9 @@ class Layer final : public PropertyOwner {
   /// Opens the provider when the layer has been enabled, goes to the step of that time, and brings Status and LastError
   /// up to date. Every frame; allocates only when something changed.
   void update(const Time& now);
+  /// Opens the data anew, as Reset does, in the next update; only if opening them failed, or tiles of what the layer
+  /// shows or is about to show.
+  void retryFailed();
   /// Whether Remove was triggered; the manager then deletes the layer in its next update.
   [[nodiscard]] bool wantsRemoval() const { return wantsRemoval_; }
 

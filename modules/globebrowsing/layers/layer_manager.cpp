@@ -247,6 +247,14 @@ std::size_t LayerManager::layerCount() const {
   return count;
 }
 
+void LayerManager::retryFailed() {
+  for (const auto& group : groups_) {
+    for (const std::unique_ptr<Layer>& layer : group->layers()) {
+      layer->retryFailed();
+    }
+  }
+}
+
 void LayerManager::update(const Time& now) {
   for (const auto& group : groups_) {
     group->update(now);

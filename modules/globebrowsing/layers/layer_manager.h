@@ -100,6 +100,8 @@ class LayerManager final : public PropertyOwner {
   [[nodiscard]] const LayerGroup& group(LayerGroupId id) const { return *groups_[static_cast<std::size_t>(id)]; }
   [[nodiscard]] std::size_t layerCount() const;
 
+  /// Has all layers that failed, or whose tiles did, open their data anew in the next update.
+  void retryFailed();
   /// Once a frame, with the scene's time, before anything asks for versions.
   void update(const Time& now = {});
   /// The sum of the groups' versions: grows when any of them does.

@@ -36,6 +36,12 @@ class LayerStep {
   [[nodiscard]] std::uint32_t stream() const { return stream_; }
   /// Of its heights in reliefLayout.
   [[nodiscard]] std::uint32_t reliefStream() const { return reliefStream_; }
+  /// Whether it could not be opened, or any of its tiles failed or has a flaw.
+  [[nodiscard]] bool hasFailed() const {
+    return tiles_->state() == TileProvider::State::Failed ||
+           (streamer_ != nullptr &&
+            (streamer_->lastError(stream_) != nullptr || streamer_->lastError(reliefStream_) != nullptr));
+  }
   /// The layer's provider that it was made by; only to be compared.
   [[nodiscard]] const TileProvider* source() const { return source_; }
   [[nodiscard]] const TileStep& when() const { return when_; }

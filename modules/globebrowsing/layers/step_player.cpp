@@ -178,6 +178,10 @@ void StepPlayer::rest() {
   awaits_ = false;
 }
 
+bool StepPlayer::hasFailed() const {
+  return std::any_of(kept_.begin(), kept_.end(), [](const Kept& kept) { return kept.step->hasFailed(); });
+}
+
 void StepPlayer::clear() {
   kept_.clear();
   current_.reset();

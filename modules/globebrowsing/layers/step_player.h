@@ -45,6 +45,8 @@ class StepPlayer {
   [[nodiscard]] bool awaits() const { return awaits_; }
   /// Open steps that come next, nearest first.
   [[nodiscard]] const std::vector<LayerStepPointer>& ahead() const { return ahead_; }
+  /// Whether any step that is kept has failed, or tiles of it.
+  [[nodiscard]] bool hasFailed() const;
   /// Why the step of the moment has nothing to show, or an empty string.
   [[nodiscard]] const std::string& error() const { return error_; }
 

@@ -48,7 +48,7 @@ class MemoryDataset {
   MemoryDataset& operator=(const MemoryDataset&) = delete;
 
   /// Of a sane size, with real numbers.
-  [[nodiscard]] Result<GDALDataset*> checked(const ImageLimits& limits) const {
+  [[nodiscard]] TileResult<GDALDataset*> checked(const ImageLimits& limits) const {
     if (!dataset_ || dataset_->GetRasterCount() < 1) {
       return messages_.failure("the image cannot be read", where_);
     }
@@ -61,8 +61,11 @@ class MemoryDataset {
       int height = 0;
       band.GetBlockSize(&width, &height);
       const double bytes = 1.0 * width * height * GDALGetDataTypeSizeBytes(band.GetRasterDataType());
-      if (bytes > 8.0 * limits.pixels || GDALDataTypeIsComplex(band.GetRasterDataType()) != 0) {
-        return failure("the image's blocks are too large, or its samples complex", where_);
+      if (GDALDataTypeIsComplex(band.GetRasterDataType()) != 0) {
+        return failure("the image's samples are complex", where_);
+      }
+      if (bytes > 8.0 * limits.pixels) {
+        return ownFailure("the image's blocks are too large", where_, "raise MERIDIAN_IMAGE_PIXELS");
       }
     }
     return dataset_.get();
@@ -92,8 +95,8 @@ void applyPalette(const GDALColorTable& palette, DecodedImage& image) {
 
 }  // namespace
 
-Result<DecodedImage> decodeByGdal(std::span<const std::uint8_t> bytes, const std::string& where,
-                                  const ImageLimits& limits) {
+TileResult<DecodedImage> decodeByGdal(std::span<const std::uint8_t> bytes, const std::string& where,
+                                      const ImageLimits& limits) {
   const GdalMessages messages;
   const MemoryDataset memory(bytes, messages, where);
   auto dataset = memory.checked(limits);
@@ -133,8 +136,8 @@ Result<DecodedImage> decodeByGdal(std::span<const std::uint8_t> bytes, const std
   return image;
 }
 
-Result<DecodedValues> valuesByGdal(std::span<const std::uint8_t> bytes, const std::string& where,
-                                   const ImageLimits& limits) {
+TileResult<DecodedValues> valuesByGdal(std::span<const std::uint8_t> bytes, const std::string& where,
+                                       const ImageLimits& limits) {
   const GdalMessages messages;
   const MemoryDataset memory(bytes, messages, where);
   auto dataset = memory.checked(limits);

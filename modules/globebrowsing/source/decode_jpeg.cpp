@@ -90,12 +90,12 @@ bool readPixels(Decompression& state, std::uint8_t* rgba) {
 
 }  // namespace
 
-Result<DecodedImage> decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& where,
-                                const ImageLimits& limits) {
+TileResult<DecodedImage> decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& where,
+                                    const ImageLimits& limits) {
   thread_local Decompression state;
   prepare(state);
   DecodedImage image;
-  const auto failed = [&]() -> Result<DecodedImage> {
+  const auto failed = [&]() -> TileResult<DecodedImage> {
     jpeg_abort_decompress(&state.info);
     return failure(std::string("the JPEG is damaged (") + static_cast<const char*>(state.message) + ")", where);
   };

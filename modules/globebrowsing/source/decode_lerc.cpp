@@ -23,7 +23,7 @@ struct Blob {
   std::vector<std::uint8_t> isThere{};  ///< of a pixel, the same for all bands
 };
 
-Result<Blob> decode(std::span<const std::uint8_t> bytes, const std::string& where, const ImageLimits& limits) {
+TileResult<Blob> decode(std::span<const std::uint8_t> bytes, const std::string& where, const ImageLimits& limits) {
   // version, type, depth, columns, rows, bands, valid pixels, blob size, masks
   std::array<unsigned int, 9> info{};
   std::array<double, 3> range{};
@@ -36,9 +36,11 @@ Result<Blob> decode(std::span<const std::uint8_t> bytes, const std::string& wher
   }
   const std::uint64_t pixels = std::uint64_t{info[3]} * info[4];
   const std::uint64_t values = pixels * info[2] * info[5];
-  if (info[2] < 1 || info[5] < 1 || info[2] > 16 || info[5] > 16 ||
-      values > 4 * static_cast<std::uint64_t>(limits.pixels)) {
+  if (info[2] < 1 || info[5] < 1 || info[2] > 16 || info[5] > 16) {
     return failure("the LERC blob has too many bands", where);
+  }
+  if (values > 4 * static_cast<std::uint64_t>(limits.pixels)) {
+    return ownFailure("the LERC blob has too many bands for its size", where, "raise MERIDIAN_IMAGE_PIXELS");
   }
   Blob blob{static_cast<int>(info[3]), static_cast<int>(info[4]), static_cast<int>(info[5]), static_cast<int>(info[2])};
   blob.hasMask = info[8] > 0;
@@ -57,7 +59,8 @@ Result<Blob> decode(std::span<const std::uint8_t> bytes, const std::string& wher
 }
 
 /// The library throws nothing by its interface, and lets its allocations fail through it.
-Result<Blob> decodeSafely(std::span<const std::uint8_t> bytes, const std::string& where, const ImageLimits& limits) {
+TileResult<Blob> decodeSafely(std::span<const std::uint8_t> bytes, const std::string& where,
+                              const ImageLimits& limits) {
   try {
     return decode(bytes, where, limits);
   } catch (const std::exception& exception) {
@@ -67,8 +70,8 @@ Result<Blob> decodeSafely(std::span<const std::uint8_t> bytes, const std::string
 
 }  // namespace
 
-Result<DecodedValues> valuesOfLerc(std::span<const std::uint8_t> bytes, const std::string& where,
-                                   const ImageLimits& limits) {
+TileResult<DecodedValues> valuesOfLerc(std::span<const std::uint8_t> bytes, const std::string& where,
+                                       const ImageLimits& limits) {
   auto blob = decodeSafely(bytes, where, limits);
   if (!blob) {
     return tl::make_unexpected(std::move(blob.error()));
@@ -82,8 +85,8 @@ Result<DecodedValues> valuesOfLerc(std::span<const std::uint8_t> bytes, const st
   return result;
 }
 
-Result<DecodedImage> decodeLerc(std::span<const std::uint8_t> bytes, const std::string& where,
-                                const ImageLimits& limits) {
+TileResult<DecodedImage> decodeLerc(std::span<const std::uint8_t> bytes, const std::string& where,
+                                    const ImageLimits& limits) {
   auto blob = decodeSafely(bytes, where, limits);
   if (!blob) {
     return tl::make_unexpected(std::move(blob.error()));

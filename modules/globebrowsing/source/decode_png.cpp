@@ -63,8 +63,8 @@ bool readPixels(png_structp png, png_bytepp rows) {
 
 }  // namespace
 
-Result<DecodedImage> decodePng(std::span<const std::uint8_t> bytes, const std::string& where,
-                               const ImageLimits& limits) {
+TileResult<DecodedImage> decodePng(std::span<const std::uint8_t> bytes, const std::string& where,
+                                   const ImageLimits& limits) {
   Input input{bytes};
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &input, leave, ignore);
   png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
@@ -74,7 +74,7 @@ Result<DecodedImage> decodePng(std::span<const std::uint8_t> bytes, const std::s
   }
   png_set_read_fn(png, &input, read);
   DecodedImage image;
-  const auto failed = [&]() -> Result<DecodedImage> {
+  const auto failed = [&]() -> TileResult<DecodedImage> {
     png_destroy_read_struct(&png, &info, nullptr);
     return failure(std::string("the PNG is damaged (") + input.message.data() + ")", where);
   };

@@ -23,7 +23,7 @@ namespace meridian::globebrowsing {
 
 namespace {
 
-constexpr vsi_l_offset largestDescription = 4U << 20U;
+constexpr vsi_l_offset largestDescription = XmlDocument::Limits{}.bytes;
 constexpr int deepestNesting = 8;  ///< VRTs that show VRTs
 constexpr std::array<std::string_view, 5> descriptionEndings{".vrt", ".xml", ".wms", ".mrf", ".wmts"};
 
@@ -143,7 +143,7 @@ class Search {
     } else if ((nesting == 0 || mayBeDescription(path)) && seen_.insert(path).second) {
       const Document document = documentAt(path);
       if (document.isTooLarge) {
-        note(path + ", which is too large to look for servers in it");
+        reach_.unchecked = path;
       } else if (!document.text.empty()) {
         lookInto(document.text, path, nesting);
       }
@@ -256,6 +256,8 @@ std::string withVerifiedCertificates(const std::string& path) {
 }
 
 Result<void> checkReach(const GdalReach& reach, const std::string& where) {
+  constexpr const char* goOnline =
+      "go online: unset MERIDIAN_OFFLINE, or set the property NetworkCacheMode to read-write";
   if (reach.isUnverified) {
     return failure("the description wants certificates not to be verified (UnsafeSSL)", where,
                    "remove that, and name the authority's certificates in MERIDIAN_CA_FILE");
@@ -263,7 +265,13 @@ Result<void> checkReach(const GdalReach& reach, const std::string& where) {
   if (reach.server && offline) {
     return failure("GDAL would ask a server (" + reach.server->substr(0, 200) +
                        "), and no server is asked in the cache mode cache-only",
-                   where, "go online: unset MERIDIAN_OFFLINE, or set the property NetworkCacheMode to read-write");
+                   where, goOnline);
+  }
+  if (reach.unchecked && offline) {
+    return failure(fmt::format("'{}' has more than {} MiB and is not looked through for servers, so that it is not "
+                               "known whether GDAL would ask one; none is asked in the cache mode cache-only",
+                               reach.unchecked->substr(0, 200), largestDescription >> 20U),
+                   where, goOnline);
   }
   return {};
 }

@@ -21,6 +21,8 @@ void setGdalNetwork(const NetworkOptions& options);
 struct GdalReach {
   std::optional<std::string> server{};  ///< an address, or GDAL's name for one; nothing: only files are read
   bool isUnverified = false;            ///< a description wants certificates not to be verified
+  /// A description that is too large to be looked through: whether it names a server is not known.
+  std::optional<std::string> unchecked{};
 };
 
 /// A path, or in its place the text of the <GDAL_WMS> that it is or names, without its UnsafeSSL. Reads the file.

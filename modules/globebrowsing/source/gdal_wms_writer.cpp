@@ -11,6 +11,7 @@
 
 #include "globebrowsing/source/capabilities_parts.h"
 #include "globebrowsing/source/gdal_wms.h"
+#include "globebrowsing/source/service_description.h"
 #include "globebrowsing/source/service_text.h"
 
 namespace meridian::globebrowsing {
@@ -201,6 +202,22 @@ Result<std::string> confirmed(std::string document, const TileService& service, 
   return document;
 }
 
+/// The document, when the capabilities that it names give that layer with all that it chooses.
+Result<std::string> confirmedBy(const Capabilities& capabilities, std::string document, const TileService& service) {
+  const Result<ServiceDescription> read = describeService(document, service.where);
+  if (!read) {
+    return tl::make_unexpected(read.error());
+  }
+  if (!read->reference) {
+    return tl::make_unexpected(cannotBeWritten(service, "the document does not refer to its capabilities"));
+  }
+  return serviceOf(*read->reference, capabilities).and_then([&](const TileService& again) {
+    return haveSameTiles(service, again)
+               ? Result<std::string>(std::move(document))
+               : tl::make_unexpected(cannotBeWritten(service, "its capabilities have another layer of that name"));
+  });
+}
+
 /// A WMS: its parameters are elements, and the rest of its address stays.
 std::string elementOfMaps(const Capabilities& capabilities, const TileService& service, bool followsTime) {
   const std::string address = service.url({0, service.matrices[0].firstColumn, service.matrices[0].firstRow});
@@ -273,7 +290,8 @@ Result<std::string> gdalWmsOfMaps(const Capabilities& capabilities, const TileSe
                                        (rows * coarsest.tileHeight) << finer);
   std::string written = document(service, elementOfMaps(capabilities, service, followsTime),
                                  windowOf(coarsest, coarsest.firstColumn, coarsest.firstRow), size);
-  return confirmed(std::move(written), service, false);
+  Result<std::string> document = confirmed(std::move(written), service, false);
+  return document && followsTime ? confirmedBy(capabilities, std::move(*document), service) : document;
 }
 
 }  // namespace meridian::globebrowsing

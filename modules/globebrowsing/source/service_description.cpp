@@ -93,6 +93,21 @@ struct Source {
 
 Result<ServiceDescription> describe(const Source& source);
 
+/// Whether a VRT shows all of the document that it wraps where it is, and as it is, so that the capabilities which that
+/// names may count in its place. What they will say of the place is not known yet; a <GDAL_WMS> has a window besides.
+bool showsAllAsItIs(const VrtWrapper& wrapper, const std::string& path) {
+  if (wrapper.noData || wrapper.makesAlpha || wrapper.scale || wrapper.offset || wrapper.isPart) {
+    return false;
+  }
+  const std::optional<std::string> document = isDocument(path) ? path : documentIn(path);
+  const auto window = document ? readGdalWms(*document, path) : Result<GdalDescription>();
+  if (!window || !window->service) {
+    return true;
+  }
+  const std::optional<TileService> shown = wrapped(wrapper, *window->service);
+  return shown && shown->east == window->service->east && shown->south == window->service->south;
+}
+
 Result<ServiceDescription> describeVrt(const std::string& content, const Source& source, const std::string& folder) {
   auto read = readVrtWrapper(content, source.where);
   if (!read) {
@@ -109,8 +124,8 @@ Result<ServiceDescription> describeVrt(const std::string& content, const Source&
   const std::string path =
       isFile && wrapper.isRelative ? (std::filesystem::path(folder) / inner).lexically_normal().string() : inner;
   auto described = describe({path, isFile ? path : source.where, source.nesting + 1, source.settings});
-  if (described && described->reference && (wrapper.declaresNoData || wrapper.scale || wrapper.offset)) {
-    result.reason = "the VRT says of a layer of capabilities what its values mean";
+  if (described && described->reference && !showsAllAsItIs(wrapper, path)) {
+    result.reason = "the VRT says of a layer of capabilities what its values mean or where it is";
     return result;
   }
   if (!described || !described->service) {
@@ -144,27 +159,29 @@ Result<ServiceDescription> describeWmtsDocument(const XmlDocument& document) {
 /// The server's word counts for all that the document says besides: it is there for programs that read no capabilities.
 CapabilitiesReference referenceOfMaps(const pugi::xml_node& root) {
   const pugi::xml_node service = child(root, "Service");
+  // GDAL puts them into its addresses as they stand, so that they are written as addresses have them.
+  const auto name = [&](std::string_view element) { return percentDecoded(text(service, element)); };
   CapabilitiesReference reference;
   reference.kind = CapabilitiesKind::Wms;
   reference.url = repairedUrl(text(root, "GetCapabilitiesUrl"));
-  reference.layer = text(service, "Layers");
-  reference.choices.style = text(service, "Styles");
-  reference.choices.format = text(service, "ImageFormat");
-  reference.choices.crs = text(service, "CRS").empty() ? text(service, "SRS") : text(service, "CRS");
+  reference.layer = name("Layers");
+  reference.choices.style = name("Styles");
+  reference.choices.format = name("ImageFormat");
+  reference.choices.crs = name("CRS").empty() ? name("SRS") : name("CRS");
   reference.choices.isTransparent = boolean(text(service, "Transparent")).value_or(false);
   const std::string server = text(service, "ServerUrl");
   const std::size_t query = std::min(server.find('?'), server.size());
   for (const std::string& part : split(server.substr(std::min(query + 1, server.size())), "&")) {
     const std::size_t equals = std::min(part.find('='), part.size());
-    const std::string name = percentDecoded(part.substr(0, equals));
+    const std::string parameter = percentDecoded(part.substr(0, equals));
     const std::string value = percentDecoded(part.substr(std::min(equals + 1, part.size())));
-    if (name.empty() || isGetMapParameter(name)) {
+    if (parameter.empty() || isGetMapParameter(parameter)) {
       continue;
     }
-    if (equalIgnoringCase(name, "time")) {
+    if (equalIgnoringCase(parameter, "time")) {
       reference.choices.time = value;
     } else {
-      reference.choices.parameters.emplace_back(name, value);
+      reference.choices.parameters.emplace_back(parameter, value);
     }
   }
   return reference;
@@ -204,7 +221,7 @@ Result<ServiceDescription> describeDocument(const std::string& content, const So
 
 /// A GetMap request tells the layer, the CRS and the extent, and that is all it takes.
 Result<ServiceDescription> describeGetMap(const std::string& url, const std::string& where) {
-  const auto parameter = [&](std::string_view name) { return parameterOf(url, name).value_or(""); };
+  const auto parameter = [&](std::string_view name) { return percentDecoded(parameterOf(url, name).value_or("")); };
   ServiceDescription result;
   const std::string layers = parameter("layers");
   if (layers.empty()) {
@@ -217,15 +234,15 @@ Result<ServiceDescription> describeGetMap(const std::string& url, const std::str
   capabilities.url = where;
   capabilities.mapAddress = url;
   CapabilitiesLayer layer;
-  layer.identifier = replaceAll(replaceAll(layers, "%2C", ","), "%20", " ");
+  layer.identifier = layers;
   layer.title = layer.identifier;
-  std::string crs = replaceAll(parameter("crs").empty() ? parameter("srs") : parameter("crs"), "%3A", ":");
+  std::string crs = parameter("crs").empty() ? parameter("srs") : parameter("crs");
   crs = crs.empty() ? "EPSG:4326" : crs;
   layer.crs = CrsNames({crs});
-  if (const std::string format = replaceAll(parameter("format"), "%2F", "/"); !format.empty()) {
+  if (const std::string format = parameter("format"); !format.empty()) {
     layer.formats = {format};
   }
-  const std::vector<std::string> box = split(replaceAll(parameter("bbox"), "%2C", ","), ",");
+  const std::vector<std::string> box = split(parameter("bbox"), ",");
   const auto known = MapCrs::of(crs, where);
   if (!known) {
     return tl::make_unexpected(known.error());
@@ -239,7 +256,7 @@ Result<ServiceDescription> describeGetMap(const std::string& url, const std::str
   }
   LayerChoices choices;
   choices.isTransparent = boolean(parameter("transparent")).value_or(false);
-  if (const std::string style = replaceAll(parameter("styles"), "%2C", ","); !style.empty()) {
+  if (const std::string style = parameter("styles"); !style.empty()) {
     layer.styles = {{style}};
     choices.style = style;
   }

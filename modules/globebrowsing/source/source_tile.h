@@ -6,12 +6,14 @@
 #include <memory>
 #include <new>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "globebrowsing/network/fetcher.h"
 #include "globebrowsing/source/raster_reader.h"
 #include "globebrowsing/source/tile_service.h"
+#include "host/api/error.h"
 
 namespace meridian::globebrowsing {
 
@@ -47,9 +49,24 @@ struct SourceTile {
 };
 using SourceTilePointer = std::shared_ptr<const SourceTile>;
 
+/// Why a body gave no pixels.
+struct TileError : Error {
+  TileError(Error error, bool isOnOurSide = false) : Error(std::move(error)), isOurs(isOnOurSide) {}
+
+  /// The body may be good: what speaks against it is our description of the service or our limits, and with others it
+  /// can be a tile.
+  bool isOurs = false;
+};
+template <class T>
+using TileResult = tl::expected<T, TileError>;
+/// As failure(), of what isOurs.
+[[nodiscard]] inline tl::unexpected<TileError> ownFailure(std::string what, std::string where, std::string remedy) {
+  return tl::make_unexpected(TileError({std::move(what), std::move(where), std::move(remedy)}, true));
+}
+
 /// An answer's body (never null) for a tile of service.matrices[matrix] -> pixels; null when it says that there is
 /// nothing. On a worker.
 using TileDecoder =
-    std::function<Result<SourceTilePointer>(const TileService&, std::size_t matrix, PixelKind, const Fetched&)>;
+    std::function<TileResult<SourceTilePointer>(const TileService&, std::size_t matrix, PixelKind, const Fetched&)>;
 
 }  // namespace meridian::globebrowsing

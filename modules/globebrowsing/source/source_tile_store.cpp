@@ -27,8 +27,8 @@ std::string keyOf(const TileService& service, PixelKind kind, const TileMatrix& 
   return key;
 }
 
-Result<SourceTilePointer> decodeGuarded(const TileDecoder& decode, const TileService& service, std::size_t matrix,
-                                        PixelKind kind, const Fetched& fetched) {
+TileResult<SourceTilePointer> decodeGuarded(const TileDecoder& decode, const TileService& service, std::size_t matrix,
+                                            PixelKind kind, const Fetched& fetched) {
   try {
     return decode(service, matrix, kind, fetched);
   } catch (const std::exception& exception) {
@@ -38,16 +38,20 @@ Result<SourceTilePointer> decodeGuarded(const TileDecoder& decode, const TileSer
   }
 }
 
-Result<SourceTilePointer> checked(SourceTilePointer tile, PixelKind kind, const TileMatrix& matrix) {
+SourceTileAnswer failed(const Error& error) {
+  return {nullptr, error};
+}
+
+TileResult<SourceTilePointer> checked(SourceTilePointer tile, PixelKind kind, const TileMatrix& matrix) {
   if (tile == nullptr) {
     return tile;
   }
   const auto pixels = static_cast<std::size_t>(tile->width) * static_cast<std::size_t>(tile->height);
   const std::size_t given = kind == PixelKind::Colours ? tile->rgba.size() / sizeof(Rgba) : tile->heights.size();
   if (tile->width != matrix.tileWidth || tile->height != matrix.tileHeight || given != pixels) {
-    return failure(fmt::format("the tile is of {} x {} pixels instead of {} x {}", tile->width, tile->height,
-                               matrix.tileWidth, matrix.tileHeight),
-                   {}, "correct the tile size in the service's description");
+    return ownFailure(fmt::format("the tile is of {} x {} pixels instead of {} x {}", tile->width, tile->height,
+                                  matrix.tileWidth, matrix.tileHeight),
+                      {}, "correct the tile size in the service's description");
   }
   return tile;
 }
@@ -338,9 +342,9 @@ class SourceTileStore::State : public std::enable_shared_from_this<State> {
                        });
     if (decoded && *decoded != nullptr) {
       parts_.fetcher->accept(entry->request, entry->fetched);
-    } else {
+    } else if (decoded || !decoded.error().isOurs) {
       parts_.fetcher->reject(entry->request);
-    }
+    }  // Else whoever corrects the description, or a limit, is to find the tile there.
     if (!decoded && decoded.error().where.empty()) {
       decoded.error().where = entry->request.url;
     }
@@ -348,8 +352,7 @@ class SourceTileStore::State : public std::enable_shared_from_this<State> {
       const std::lock_guard lock(mutex_);
       entry->fetched = {};
       if (isCurrent(entry)) {
-        settle(entry, decoded ? SourceTileAnswer{std::move(*decoded)} : SourceTileAnswer{nullptr, decoded.error()},
-               after);
+        settle(entry, decoded ? SourceTileAnswer{std::move(*decoded)} : failed(decoded.error()), after);
         evict();
       }
     }

@@ -21,8 +21,9 @@ struct SourceTileAnswer {
 ///
 /// A tile is fetched while somebody wants it, at the greatest priority of those who do, and cancelled when nobody does
 /// any more. It is decoded on a worker, most urgent first, and only then accepted into (or rejected from) the fetcher's
-/// cache. Decoded tiles stay, least recently wanted dropped first, within the budget; what is wanted or held is never
-/// dropped. What failed, and what is not there, is not remembered here: that is the fetcher's to do.
+/// cache; neither where only our description or limits speak against it. Decoded tiles stay, least recently wanted
+/// dropped first, within the budget; what is wanted or held is never dropped. What failed, and what is not there, is
+/// not remembered here: that is the fetcher's to do.
 ///
 /// Safe from any thread. Two services share a tile when address, headers and meaning of the pixels are the same.
 class SourceTileStore {

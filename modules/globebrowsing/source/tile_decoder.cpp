@@ -28,7 +28,7 @@ bool startsWith(std::span<const std::uint8_t> bytes, std::string_view begin, std
 
 /// What there is in place of an image: nothing, as agreed, or an error.
 template <class Tile>
-Result<Tile> withoutImage(std::span<const std::uint8_t> bytes, const TileService& service) {
+TileResult<Tile> withoutImage(std::span<const std::uint8_t> bytes, const TileService& service) {
   if (bytes.empty()) {
     return failure("the tile is empty", service.where);
   }
@@ -43,8 +43,8 @@ Result<Tile> withoutImage(std::span<const std::uint8_t> bytes, const TileService
                  service.where);
 }
 
-Result<DecodedImage> decodeImage(std::span<const std::uint8_t> bytes, TileFormat format, const std::string& where,
-                                 const ImageLimits& limits) {
+TileResult<DecodedImage> decodeImage(std::span<const std::uint8_t> bytes, TileFormat format, const std::string& where,
+                                     const ImageLimits& limits) {
   switch (format) {
     case TileFormat::Jpeg:
       return decodeJpeg(bytes, where, limits);
@@ -58,17 +58,17 @@ Result<DecodedImage> decodeImage(std::span<const std::uint8_t> bytes, TileFormat
 }
 
 template <class Image>
-Result<void> checkMatrix(const Image& image, const TileService& service, std::size_t matrix) {
+TileResult<void> checkMatrix(const Image& image, const TileService& service, std::size_t matrix) {
   assert(matrix < service.matrices.size());
   const TileMatrix& expected = service.matrices[matrix];
   if (image.width != expected.tileWidth || image.height != expected.tileHeight) {
     const bool isSquare = image.width == image.height;
-    return failure(fmt::format("the tile has {} x {} pixels in place of {} x {}", image.width, image.height,
-                               expected.tileWidth, expected.tileHeight),
-                   service.where,
-                   service.isSizeGiven && isSquare
-                       ? fmt::format("write Tiles = {{ PixelSize = {} }} in the layer", image.width)
-                       : "correct the description's block or tile size");
+    return ownFailure(fmt::format("the tile has {} x {} pixels in place of {} x {}", image.width, image.height,
+                                  expected.tileWidth, expected.tileHeight),
+                      service.where,
+                      service.isSizeGiven && isSquare
+                          ? fmt::format("write Tiles = {{ PixelSize = {} }} in the layer", image.width)
+                          : "correct the description's block or tile size");
   }
   return {};
 }
@@ -147,8 +147,8 @@ float unpacked(const std::uint8_t* rgba, TileEncoding encoding) {
 }
 
 /// Values of band 1; eight bits come from our own, faster readers.
-Result<DecodedValues> decodeValues(std::span<const std::uint8_t> bytes, TileFormat format, const std::string& where,
-                                   const ImageLimits& limits) {
+TileResult<DecodedValues> decodeValues(std::span<const std::uint8_t> bytes, TileFormat format, const std::string& where,
+                                       const ImageLimits& limits) {
   constexpr std::size_t bitDepthOfPng = 24;
   constexpr std::size_t colourTypeOfPng = 25;
   if (format == TileFormat::Lerc) {
@@ -171,8 +171,8 @@ Result<DecodedValues> decodeValues(std::span<const std::uint8_t> bytes, TileForm
   return result;
 }
 
-Result<DecodedHeights> heightsOfValues(std::span<const std::uint8_t> bytes, TileFormat format,
-                                       const TileService& service, const ImageLimits& limits) {
+TileResult<DecodedHeights> heightsOfValues(std::span<const std::uint8_t> bytes, TileFormat format,
+                                           const TileService& service, const ImageLimits& limits) {
   auto values = decodeValues(bytes, format, service.where, limits);
   if (!values) {
     return tl::make_unexpected(std::move(values.error()));
@@ -187,8 +187,8 @@ Result<DecodedHeights> heightsOfValues(std::span<const std::uint8_t> bytes, Tile
   return tile;
 }
 
-Result<DecodedHeights> heightsOfPacked(std::span<const std::uint8_t> bytes, TileFormat format,
-                                       const TileService& service, const ImageLimits& limits) {
+TileResult<DecodedHeights> heightsOfPacked(std::span<const std::uint8_t> bytes, TileFormat format,
+                                           const TileService& service, const ImageLimits& limits) {
   auto image = decodeImage(bytes, format, service.where, limits);
   if (!image) {
     return tl::make_unexpected(std::move(image.error()));
@@ -233,17 +233,20 @@ TileFormat formatOf(std::span<const std::uint8_t> bytes) {
   return startsWith(bytes, "BM"sv) ? TileFormat::Bmp : TileFormat::Unknown;
 }
 
-Result<void> checkTileSize(std::int64_t width, std::int64_t height, const std::string& where,
-                           const ImageLimits& limits) {
+TileResult<void> checkTileSize(std::int64_t width, std::int64_t height, const std::string& where,
+                               const ImageLimits& limits) {
   if (width < 1 || height < 1 || width > limits.side || height > limits.side || width * height > limits.pixels) {
-    return failure(fmt::format("the tile announces {} x {} pixels, more than are decoded", width, height), where,
-                   "ask for smaller tiles, or raise MERIDIAN_IMAGE_SIDE or MERIDIAN_IMAGE_PIXELS");
+    // No limit can be set to more than the longest side allows.
+    const bool isOurs = width >= 1 && height >= 1 && std::max(width, height) <= longestTileSide;
+    Error error{fmt::format("the tile announces {} x {} pixels, more than are decoded", width, height), where,
+                "ask for smaller tiles, or raise MERIDIAN_IMAGE_SIDE or MERIDIAN_IMAGE_PIXELS"};
+    return tl::make_unexpected(TileError(std::move(error), isOurs));
   }
   return {};
 }
 
-Result<DecodedColours> decodeColours(std::span<const std::uint8_t> bytes, const TileService& service,
-                                     std::size_t matrix, const ImageLimits& limits) {
+TileResult<DecodedColours> decodeColours(std::span<const std::uint8_t> bytes, const TileService& service,
+                                         std::size_t matrix, const ImageLimits& limits) {
   const TileFormat format = formatOf(bytes);
   if (format == TileFormat::Unknown) {
     return withoutImage<DecodedColours>(bytes, service);
@@ -262,8 +265,8 @@ Result<DecodedColours> decodeColours(std::span<const std::uint8_t> bytes, const 
   return std::move(image->tile);
 }
 
-Result<DecodedHeights> decodeHeights(std::span<const std::uint8_t> bytes, const TileService& service,
-                                     std::size_t matrix, const ImageLimits& limits) {
+TileResult<DecodedHeights> decodeHeights(std::span<const std::uint8_t> bytes, const TileService& service,
+                                         std::size_t matrix, const ImageLimits& limits) {
   const TileFormat format = formatOf(bytes);
   if (format == TileFormat::Unknown) {
     return withoutImage<DecodedHeights>(bytes, service);
@@ -282,13 +285,13 @@ Result<DecodedHeights> decodeHeights(std::span<const std::uint8_t> bytes, const 
   return tile;
 }
 
-Result<SourceTilePointer> decodeTile(const TileService& service, std::size_t matrix, PixelKind kind,
-                                     const Fetched& fetched) {
+TileResult<SourceTilePointer> decodeTile(const TileService& service, std::size_t matrix, PixelKind kind,
+                                         const Fetched& fetched) {
   return decodeTileWithin({}, service, matrix, kind, fetched);
 }
 
-Result<SourceTilePointer> decodeTileWithin(const ImageLimits& limits, const TileService& service, std::size_t matrix,
-                                           PixelKind kind, const Fetched& fetched) {
+TileResult<SourceTilePointer> decodeTileWithin(const ImageLimits& limits, const TileService& service,
+                                               std::size_t matrix, PixelKind kind, const Fetched& fetched) {
   const auto published = [](auto& decoded, auto&& pixels) -> SourceTilePointer {
     if (decoded.isEmpty()) {
       return nullptr;

@@ -42,21 +42,23 @@ inline constexpr int longestTileSide = 8192;
 /// pixels; of colours the last column and row are left out.
 ///
 /// Empty where the service answers with an exception (OGC XML, ArcGIS JSON, a page in HTML) and isExceptionEmpty says
-/// what that means. Errors: an exception otherwise, quoted; a format that is not read; damaged or truncated data; a
-/// size other than the matrix's; beyond the limits. No input crashes it. Safe from any thread.
-[[nodiscard]] Result<DecodedColours> decodeColours(std::span<const std::uint8_t> bytes, const TileService& service,
-                                                   std::size_t matrix, const ImageLimits& limits = {});
+/// what that means. Errors: an exception otherwise, quoted; a format that is not read; damaged or truncated data; of
+/// our own making a size other than the matrix's, and what is beyond the limits. No input crashes it. Safe from any
+/// thread.
+[[nodiscard]] TileResult<DecodedColours> decodeColours(std::span<const std::uint8_t> bytes, const TileService& service,
+                                                       std::size_t matrix, const ImageLimits& limits = {});
 
 /// Likewise heights, by service.encoding. Of an Image: band 1 times heightScale plus heightOffset (default: what the
 /// raster says itself, else 1 and 0), not-a-number where noData, the raster's own or its mask say so. Of the packed
 /// ones: not-a-number where alpha is 0 (PackedFloat: where the float is one, or beyond 1e6 metres).
-[[nodiscard]] Result<DecodedHeights> decodeHeights(std::span<const std::uint8_t> bytes, const TileService& service,
-                                                   std::size_t matrix, const ImageLimits& limits = {});
+[[nodiscard]] TileResult<DecodedHeights> decodeHeights(std::span<const std::uint8_t> bytes, const TileService& service,
+                                                       std::size_t matrix, const ImageLimits& limits = {});
 
 /// Either of them, for a SourceTileStore: a TileDecoder.
-[[nodiscard]] Result<SourceTilePointer> decodeTile(const TileService& service, std::size_t matrix, PixelKind kind,
-                                                   const Fetched& fetched);
-[[nodiscard]] Result<SourceTilePointer> decodeTileWithin(const ImageLimits& limits, const TileService& service,
-                                                         std::size_t matrix, PixelKind kind, const Fetched& fetched);
+[[nodiscard]] TileResult<SourceTilePointer> decodeTile(const TileService& service, std::size_t matrix, PixelKind kind,
+                                                       const Fetched& fetched);
+[[nodiscard]] TileResult<SourceTilePointer> decodeTileWithin(const ImageLimits& limits, const TileService& service,
+                                                             std::size_t matrix, PixelKind kind,
+                                                             const Fetched& fetched);
 
 }  // namespace meridian::globebrowsing

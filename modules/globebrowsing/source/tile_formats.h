@@ -20,17 +20,17 @@ struct DecodedImage {
   bool hasAlpha = false;
 };
 
-[[nodiscard]] Result<void> checkTileSize(std::int64_t width, std::int64_t height, const std::string& where,
-                                         const ImageLimits& limits);
-[[nodiscard]] Result<DecodedImage> decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& where,
-                                              const ImageLimits& limits = {});
-[[nodiscard]] Result<DecodedImage> decodePng(std::span<const std::uint8_t> bytes, const std::string& where,
-                                             const ImageLimits& limits = {});
+[[nodiscard]] TileResult<void> checkTileSize(std::int64_t width, std::int64_t height, const std::string& where,
+                                             const ImageLimits& limits);
+[[nodiscard]] TileResult<DecodedImage> decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& where,
+                                                  const ImageLimits& limits = {});
+[[nodiscard]] TileResult<DecodedImage> decodePng(std::span<const std::uint8_t> bytes, const std::string& where,
+                                                 const ImageLimits& limits = {});
 /// Whatever GDAL reads of WebP, TIFF, GIF, BMP, JPEG, PNG and Lerc1.
-[[nodiscard]] Result<DecodedImage> decodeByGdal(std::span<const std::uint8_t> bytes, const std::string& where,
-                                                const ImageLimits& limits = {});
-[[nodiscard]] Result<DecodedImage> decodeLerc(std::span<const std::uint8_t> bytes, const std::string& where,
-                                              const ImageLimits& limits = {});
+[[nodiscard]] TileResult<DecodedImage> decodeByGdal(std::span<const std::uint8_t> bytes, const std::string& where,
+                                                    const ImageLimits& limits = {});
+[[nodiscard]] TileResult<DecodedImage> decodeLerc(std::span<const std::uint8_t> bytes, const std::string& where,
+                                                  const ImageLimits& limits = {});
 
 /// Stored values of band 1, not-a-number where there are none by the raster's own account.
 struct DecodedValues {
@@ -40,9 +40,9 @@ struct DecodedValues {
   double scale = 1.0;  ///< the raster's own
   double offset = 0.0;
 };
-[[nodiscard]] Result<DecodedValues> valuesByGdal(std::span<const std::uint8_t> bytes, const std::string& where,
-                                                 const ImageLimits& limits = {});
-[[nodiscard]] Result<DecodedValues> valuesOfLerc(std::span<const std::uint8_t> bytes, const std::string& where,
-                                                 const ImageLimits& limits = {});
+[[nodiscard]] TileResult<DecodedValues> valuesByGdal(std::span<const std::uint8_t> bytes, const std::string& where,
+                                                     const ImageLimits& limits = {});
+[[nodiscard]] TileResult<DecodedValues> valuesOfLerc(std::span<const std::uint8_t> bytes, const std::string& where,
+                                                     const ImageLimits& limits = {});
 
 }  // namespace meridian::globebrowsing

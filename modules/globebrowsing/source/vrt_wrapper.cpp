@@ -1,9 +1,11 @@
 #include "globebrowsing/source/vrt_wrapper.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "globebrowsing/source/service_text.h"
+#include "globebrowsing/source/tile_pyramid.h"
 #include "globebrowsing/source/xml_document.h"
 
 namespace meridian::globebrowsing {
@@ -21,6 +23,7 @@ struct Band {
   std::optional<double> offset{};
   std::array<double, 4> from{};  ///< x, y, width, height
   std::array<double, 4> to{};
+  bool isPart = false;  ///< `from` is less than all of the source
 };
 
 std::optional<std::array<double, 4>> rectangle(const pugi::xml_node& node) {
@@ -84,6 +87,9 @@ std::optional<Band> readBand(const pugi::xml_node& node) {
   band.number = static_cast<int>(integer(text(source, "SourceBand")).value_or(1));
   band.from = *from;
   band.to = *to;
+  const pugi::xml_node size = child(source, "SourceProperties");
+  band.isPart = (*from)[2] < number(attribute(size, "RasterXSize")).value_or(0.0) ||
+                (*from)[3] < number(attribute(size, "RasterYSize")).value_or(0.0);
   band.noData = number(text(source, "NODATA"));
   const bool isAlpha = equalIgnoringCase(text(node, "ColorInterp"), "Alpha");
   for (const pugi::xml_node& part : source.children()) {
@@ -167,7 +173,6 @@ Result<VrtDescription> readVrtWrapper(const std::string& content, const std::str
   }
   if (first->declared) {
     wrapper.noData = first->declared;
-    wrapper.declaresNoData = true;
   }
   wrapper.scale = first->scale;
   wrapper.offset = first->offset;
@@ -177,6 +182,9 @@ Result<VrtDescription> readVrtWrapper(const std::string& content, const std::str
   wrapper.pixelHeight = -affine[5] * first->to[3] / first->from[3];
   wrapper.left = affine[0] + affine[1] * first->to[0];
   wrapper.top = affine[3] + affine[5] * first->to[1];
+  wrapper.isPart = first->isPart;
+  wrapper.right = affine[0] + affine[1] * (first->to[0] + first->to[2]);
+  wrapper.bottom = affine[3] + affine[5] * (first->to[1] + first->to[3]);
   return VrtDescription{std::move(wrapper), {}};
 }
 
@@ -190,6 +198,15 @@ std::optional<TileService> wrapped(const VrtWrapper& wrapper, TileService inner)
   if (!isSame(wrapper.pixelWidth, finest.pixelWidth, 1e-6 * finest.pixelWidth) ||
       !isSame(wrapper.pixelHeight, finest.pixelHeight, 1e-6 * finest.pixelHeight) ||
       !isSame(wrapper.left, finest.left, 1e-6 * span) || !isSame(wrapper.top, finest.top, 1e-6 * span)) {
+    return std::nullopt;
+  }
+  // The service may end sooner: windows of GIBS run beyond the globe.
+  const Extent shown{inner.west, std::max(inner.south, wrapper.bottom), std::min(inner.east, wrapper.right),
+                     inner.north};
+  const bool isPart = inner.east - shown.east > 1e-6 * span || shown.south - inner.south > 1e-6 * span;
+  const std::size_t levels = inner.matrices.size();
+  // Its addresses count the levels, so that none may go.
+  if (isPart && (!setMatrices(inner, inner.matrices, shown) || inner.matrices.size() != levels)) {
     return std::nullopt;
   }
   inner.bands = wrapper.bands;

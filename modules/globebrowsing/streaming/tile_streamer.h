@@ -54,8 +54,9 @@ struct TileStreamerOptions {
 /// for or touched in this frame or the last, or when somebody holds its pointer; the others are evicted, least recently
 /// used first, while the cache is over its budget. What is in use stays even over the budget.
 ///
-/// A failure is for good until the stream is forgotten (or the error, long unused, is evicted like a tile).
-/// Render thread only, but for what jobs do. A frame that asks for nothing new allocates nothing.
+/// A failure is for good until the stream is forgotten (or the error, long unused, is evicted like a tile); layers do
+/// so when the network's settings allow more than before. Render thread only, but for what jobs do. A frame that asks
+/// for nothing new allocates nothing.
 class TileStreamer {
  public:
   /// Of a server that works something comes at least now and then.

@@ -104,6 +104,47 @@ TEST_F(MapServiceTest, APropertyLimitsTheImagesOfTiles) {
   const StringProperty& lastError = globe.layers().group(LayerGroupId::ColorLayers).find("World")->lastError;
   ASSERT_TRUE(framesUntil([&lastError] { return !lastError.get().empty(); }));
   EXPECT_THAT(lastError.get(), HasSubstr("MERIDIAN_IMAGE_SIDE"));
+  setModuleProperty("NetworkImageSide", 512.0);
+  ASSERT_TRUE(framesUntil([&lastError] { return lastError.get().empty(); }));
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(lastError.get(), "");
+  EXPECT_NEAR(centre()[0], WorldRaster::value(0, 0.2, 0.1), 4);
+}
+
+TEST_F(MapServiceTest, WhatFailedOfflineIsThereOnline) {
+  setModuleProperty("NetworkCacheMode", "cache-only");
+  const int port = freePort();
+  const std::string address = "http://127.0.0.1:" + std::to_string(port);
+  WorldRaster::cut(folder_ / "world.tif", folder_ / "served");
+  const TimedPyramid pyramid{.days = 2, .levels = 2};
+  pyramid.write(folder_ / "served", address);
+  const ServerProcess server(ServerProcess::fileServer((folder_ / "served").string(), port), port);
+  time_ = TimedPyramid::timeOf(0);
+  auto& globe = addGlobe({{"ColorLayers", listOf({fileLayer("Days", TimedPyramid::filePath(address)),
+                                                  fileLayer("World", WorldRaster::document(address))})}});
+  const LayerGroup& group = globe.layers().group(LayerGroupId::ColorLayers);
+  const Layer& days = *group.find("Days");
+  const Layer& world = *group.find("World");
+  ASSERT_TRUE(framesUntil([&] { return days.status.get() == "failed" && !world.lastError.get().empty(); }));
+  EXPECT_THAT(days.lastError.get(), HasSubstr("cache-only"));
+  EXPECT_THAT(world.lastError.get(), HasSubstr("go online"));
+  ASSERT_TRUE(settle());
+  const std::shared_ptr<TileProvider> failed = world.provider();
+  setModuleProperty("NetworkCacheMode", "read-only");
+  ASSERT_TRUE(framesUntil([&] { return days.status.get() == "ready" && world.status.get() == "ready"; }))
+      << days.lastError.get();
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(days.lastError.get(), "");
+  EXPECT_EQ(world.lastError.get(), "");
+  for (int band = 0; band < 3; ++band) {
+    EXPECT_NEAR(centre()[static_cast<std::size_t>(band)], WorldRaster::value(band, 0.2, 0.1), 4) << band;
+  }
+  const std::shared_ptr<TileProvider> shown = world.provider();
+  EXPECT_NE(shown, failed);
+  setModuleProperty("NetworkCacheMode", "cache-only");
+  setModuleProperty("NetworkCacheMode", "read-write");
+  frame();
+  EXPECT_EQ(world.provider(), shown) << "what works goes on";
 }
 
 TEST_F(MapServiceTest, TheViewWaitsForAServerThatIsDown) {

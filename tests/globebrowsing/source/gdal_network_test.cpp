@@ -2,6 +2,7 @@
 #include "globebrowsing/source/gdal_network.h"
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include <cpl_conv.h>
@@ -154,11 +155,29 @@ TEST_F(GdalNetwork, LooksAtADescriptionOnceAndAtRastersNotAtAll) {
   std::ofstream(raster) << tms();
   EXPECT_FALSE(gdalReach(vrt(raster)).server);
   const std::string large = testing::TempDir() + "large.vrt";
-  std::ofstream(large) << "<VRTDataset>" << std::string(std::size_t{5} << 20, ' ') << "</VRTDataset>";
-  EXPECT_THAT(gdalReach(large).server.value_or(""), HasSubstr("too large"));
+  std::ofstream(large) << "<VRTDataset>" << std::string(std::size_t{5} << 20, ' ') << "<A><SourceFilename>"
+                       << server_.url("/a.tif") << "</SourceFilename></A></VRTDataset>";
+  EXPECT_THAT(gdalReach(large).server.value_or(""), HasSubstr("a.tif"));
   for (const std::string& each : {file, raster, large}) {
     std::remove(each.c_str());
   }
+}
+
+TEST_F(GdalNetwork, OfMosaicsThatAreTooLargeItSaysThatItDoesNotKnow) {
+  goOffline(true);
+  const std::string mosaic = testing::TempDir() + "mosaic.vrt";
+  std::ofstream(mosaic) << "<VRTDataset>" << std::string(std::size_t{5} << 20, ' ') << "</VRTDataset>";
+  EXPECT_TRUE(checkReach(gdalReach(mosaic), "the.asset:3")) << "it names no server";
+  std::filesystem::resize_file(mosaic, (std::size_t{64} << 20) + 1);  // takes no room on the disk
+  EXPECT_FALSE(gdalReach(mosaic).server);
+  const Result<void> checked = checkReach(gdalReach(mosaic), "the.asset:3");
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message(), HasSubstr("mosaic.vrt' has more than 64 MiB"));
+  EXPECT_THAT(checked.error().message(), HasSubstr("not known"));
+  EXPECT_THAT(checked.error().message(), HasSubstr("cache-only"));
+  goOffline(false);
+  EXPECT_TRUE(checkReach(gdalReach(mosaic), "the.asset:3"));
+  std::remove(mosaic.c_str());
 }
 
 TEST_F(GdalNetwork, HandsOnWhatIsSetAndCanBeTakenBack) {

@@ -387,6 +387,8 @@ TEST(VrtWrapper, OnlyWhatPassesBandsOnIsOurs) {
   EXPECT_TRUE(shown(vrt("-810, 0.3515625, 0, 90, 0, -0.3515625",
                         "<DstRect xOff=\"1792\" yOff=\"0\" xSize=\"1024\" ySize=\"512\"/>", constant)));
   EXPECT_FALSE(shown(vrt("-90, 0.3515625, 0, 90, 0, -0.3515625", there, constant)));
+  EXPECT_EQ(service->east, 180.0);
+  EXPECT_EQ(service->south, -90.0);
   EXPECT_FALSE(shown(vrt(plain, there, "<LUT>0:0,128:255,255:255</LUT>")));
   EXPECT_FALSE(shown(vrt(plain, there, "<ScaleOffset>10</ScaleOffset><NODATA>0</NODATA>")));
   EXPECT_FALSE(shown("<VRTDataset subClass=\"VRTWarpedDataset\"/>"));

@@ -175,6 +175,33 @@ TEST(ServiceDescription, AWrittenLayerFollowsTimeAlsoWithoutADefault) {
   EXPECT_EQ(again.reference->choices.time, "") << path;
 }
 
+TEST(ServiceDescription, AWrittenLayerIsFoundWhateverItsNamesHave) {
+  const auto capabilities = parse(
+      "<WMS_Capabilities version='1.3.0'><Capability><Request><GetMap><Format>image/png; mode=8bit</Format><DCPType>"
+      "<HTTP><Get><OnlineResource xmlns:xlink='http://www.w3.org/1999/xlink' xlink:href='http://h/wms?'/></Get></HTTP>"
+      "</DCPType></GetMap></Request><Layer><Title>All</Title><CRS>CRS:84</CRS><EX_GeographicBoundingBox>"
+      "<westBoundLongitude>-180</westBoundLongitude><eastBoundLongitude>180</eastBoundLongitude><southBoundLatitude>-90"
+      "</southBoundLatitude><northBoundLatitude>90</northBoundLatitude></EX_GeographicBoundingBox><Layer>"
+      "<Name>ns:ice</Name><Title>Ice</Title><Style><Name>boxfill/rainbow</Name></Style><Dimension name='time' "
+      "units='ISO8601'>2001-01-01/2003-01-01/P1Y</Dimension></Layer></Layer></Capability></WMS_Capabilities>");
+  ASSERT_TRUE(capabilities) << capabilities.error().message();
+  LayerChoices choices;
+  choices.style = "boxfill/rainbow";
+  const auto asset = assetOf(*capabilities, capabilities->layers.back(), choices, {"Earth", "ColorLayers"});
+  ASSERT_TRUE(asset) << asset.error().message();
+  const std::string& path = *asset->table.find("FilePath")->string();
+  EXPECT_EQ(path.substr(0, 10), "<GDAL_WMS>") << path;
+  const ServiceDescription again = describe(path);
+  ASSERT_TRUE(again.reference) << path;
+  EXPECT_EQ(again.reference->layer, "ns:ice");
+  EXPECT_EQ(again.reference->choices.style, "boxfill/rainbow");
+  EXPECT_EQ(again.reference->choices.format, "image/png; mode=8bit");
+  const auto service = serviceOf(*again.reference, *capabilities);
+  ASSERT_TRUE(service) << service.error().message();
+  EXPECT_NE(service->url({0, 0, 0}).find("LAYERS=ns%3Aice&STYLES=boxfill%2Frainbow&"), std::string::npos)
+      << service->url({0, 0, 0});
+}
+
 TEST(ServiceDescription, GetMapAddressesAreLayers) {
   const ServiceDescription old = describe(
       "WMS:http://h/w?map=m&SERVICE=WMS&VERSION=1.1.1&REQUEST=GetMap&LAYERS=a,b&STYLES=&SRS=EPSG:4326&"
@@ -189,6 +216,20 @@ TEST(ServiceDescription, GetMapAddressesAreLayers) {
   ASSERT_TRUE(three.service);
   EXPECT_NEAR(three.service->west, 20.0, 1e-9);
   EXPECT_NEAR(three.service->north, 30.0, 1e-9);
+}
+
+TEST(ServiceDescription, EscapesInGetMapAddressesAreReadOnce) {
+  const ServiceDescription escaped = describe(
+      "WMS:http://h/w?VERSION=1.1.1&LAYERS=ns%3Aice%2cfog%20a&STYLES=boxfill%2Frainbow%2C&SRS=EPSG%3a4326&"
+      "BBOX=%2D10%2c20%2C30%2C60&FORMAT=image%2fpng&TRANSPARENT=TRUE");
+  ASSERT_TRUE(escaped.service);
+  EXPECT_NEAR(escaped.service->west, -10.0, 1e-9);
+  EXPECT_NEAR(escaped.service->north, 60.0, 1e-9);
+  const std::string url = escaped.service->url({0, 0, 0});
+  for (const char* part :
+       {"LAYERS=ns%3Aice%2Cfog%20a&", "STYLES=boxfill%2Frainbow%2C&", "SRS=EPSG:4326&", "FORMAT=image/png&"}) {
+    EXPECT_NE(url.find(part), std::string::npos) << part << " in " << url;
+  }
 }
 
 TEST(ServiceDescription, RealVrtsNeedTheirSibling) {

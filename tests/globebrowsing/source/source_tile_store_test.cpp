@@ -151,7 +151,10 @@ TEST_F(SourceTileStoreTest, RefusesTilesOfAnotherSize) {
   const auto tile = get({{0, 1, 1}});
   ASSERT_TRUE(tile->answer(0).error);
   EXPECT_THAT(tile->answer(0).error->message(), testing::HasSubstr("8 x 8 pixels instead of 16 x 8"));
-  EXPECT_THAT(fetcher_->rejected(), ElementsAre(Pair("0/1/1", 1)));
+  EXPECT_THAT(fetcher_->rejected(), IsEmpty()) << "with the size corrected it is a tile";
+  EXPECT_THAT(fetcher_->accepted(), IsEmpty());
+  service_ = makeService();
+  EXPECT_NE(get({{0, 1, 1}})->answer(0).tile, nullptr);
 }
 
 TEST_F(SourceTileStoreTest, KeepsKindsAndRulesApart) {

@@ -297,6 +297,30 @@ TEST(TileDecoder, AnotherSizeNamesTheKeyThatTellsIt) {
       << "no size would make it a square";
 }
 
+TEST(TileDecoder, TellsOurMistakesFromThoseOfTheService) {
+  const auto isOurs = [](const Bytes& bytes, const TileService& service, const ImageLimits& limits = {}) {
+    const auto coloured = decodeColours(bytes, service, 0, limits);
+    const auto high = decodeHeights(bytes, service, 0, limits);
+    EXPECT_FALSE(coloured || high);
+    EXPECT_EQ(coloured.error().isOurs, high.error().isOurs);
+    return coloured.error().isOurs;
+  };
+  const TileService service = serviceOfSize(16, 8);
+  for (const char* driver : {"PNG", "JPEG", "GTiff"}) {
+    const Bytes picture = makePicture({driver, 16, 8, 3}, ramp);
+    EXPECT_TRUE(isOurs(picture, serviceOfSize(32, 8))) << driver;
+    EXPECT_TRUE(isOurs(picture, service, {15, 1 << 24})) << driver;
+    EXPECT_TRUE(isOurs(picture, service, {8192, 127})) << driver;
+    const Bytes half(picture.begin(), picture.begin() + static_cast<std::ptrdiff_t>(picture.size() / 4));
+    EXPECT_FALSE(isOurs(half, service)) << driver;
+  }
+  for (const char* said : {"", "abc",
+                           "<ServiceExceptionReport><ServiceException>no</ServiceException>"
+                           "</ServiceExceptionReport>"}) {
+    EXPECT_FALSE(isOurs(toBytes(said), service)) << said;
+  }
+}
+
 TEST(TileDecoder, TellsWhatIsWrong) {
   TileService service = serviceOfSize(256, 256);
   const std::string exception =
@@ -339,6 +363,7 @@ TEST(TileDecoder, DoesNotAllocateWhatAHeaderAnnounces) {
   const TileService service = serviceOfSize(16, 8);
   EXPECT_FALSE(errorOf(withPngSize(png, 2'000'000'000, 2'000'000'000), service).empty());
   EXPECT_NE(errorOf(withPngSize(png, 8000, 8000), service).find("more than are decoded"), std::string::npos);
+  EXPECT_FALSE(decodeColours(withPngSize(png, 8193, 8), service, 0).error().isOurs) << "whatever the limits";
   Bytes jpeg = makePicture({"JPEG", 16, 8, 3}, ramp);
   for (std::size_t at = 0; at + 9 < jpeg.size(); ++at) {
     if (jpeg[at] == 0xFF && jpeg[at + 1] == 0xC0) {

@@ -126,6 +126,33 @@ TEST_F(VrtTools, WhatBuildvrtWritesIsTheService) {
   EXPECT_EQ(describe("over.vrt").service->heightOffset, 10.0);
 }
 
+TEST_F(VrtTools, OfAServiceThatIsCroppedOnlyThatPartIsThere) {
+  translate("a.wms", "quarter.vrt", {"-projwin", "-180", "90", "0", "0"});
+  const ServiceDescription quarter = describe("quarter.vrt");
+  ASSERT_TRUE(quarter.service) << quarter.reason;
+  EXPECT_EQ(quarter.service->west, -180.0);
+  EXPECT_EQ(quarter.service->south, 0.0);
+  EXPECT_EQ(quarter.service->east, 0.0);
+  EXPECT_EQ(quarter.service->north, 90.0);
+  EXPECT_EQ(quarter.service->matrices.size(), 4U);
+  EXPECT_EQ(quarter.service->matrices.front().lastColumn, 7);
+  EXPECT_EQ(quarter.service->matrices.front().lastRow, 3);
+  EXPECT_EQ(quarter.service->url({0, 5, 2}), "http://127.0.0.1:9/3/5/2.png");
+  EXPECT_EQ(quarter.service->url({3, 0, 0}), "http://127.0.0.1:9/0/0/0.png");
+  translate("a.wms", "window.vrt", {"-srcwin", "0", "0", "300", "2048"});
+  const ServiceDescription window = describe("window.vrt");
+  ASSERT_TRUE(window.service) << window.reason;
+  EXPECT_NEAR(window.service->east, -180.0 + 300 * 360.0 / 4096, 1e-9);
+  EXPECT_EQ(window.service->south, -90.0);
+  EXPECT_EQ(window.service->matrices.front().lastColumn, 1);
+  translate("a.wms", "whole.vrt", {});
+  EXPECT_EQ(describe("whole.vrt").service->east, 180.0);
+  EXPECT_EQ(describe("whole.vrt").service->matrices.front().lastColumn, 15);
+  translate("quarter.vrt", "eighth.vrt", {"-srcwin", "0", "0", "1024", "1024"});
+  ASSERT_TRUE(describe("eighth.vrt").service) << describe("eighth.vrt").reason;
+  EXPECT_EQ(describe("eighth.vrt").service->east, -90.0);
+}
+
 TEST_F(VrtTools, WhatAServiceCannotSayIsLeftToGdal) {
   build("a.wms", "differ.vrt", {"-srcnodata", "0 1 2"});
   EXPECT_FALSE(describe("differ.vrt").service);
@@ -139,6 +166,30 @@ TEST_F(VrtTools, WhatAServiceCannotSayIsLeftToGdal) {
   translate("series.wms", "series.vrt", {"-a_scale", "2"});
   EXPECT_FALSE(describe("series.vrt").reference) << "its scale would be lost";
   EXPECT_THAT(describe("series.vrt").reason, HasSubstr("capabilities"));
+}
+
+TEST_F(VrtTools, OfALayerOfCapabilitiesAllIsPassedOnOrNothing) {
+  write("series.wms", "<GetCapabilitiesUrl>http://127.0.0.1:9/wms</GetCapabilitiesUrl>");
+  translate("series.wms", "plain.vrt", {});
+  EXPECT_TRUE(describe("plain.vrt").reference) << describe("plain.vrt").reason;
+  build("series.wms", "built.vrt", {"-srcnodata", "0"});
+  translate("series.wms", "none.vrt", {"-a_nodata", "0"});
+  translate("series.wms", "part.vrt", {"-projwin", "-180", "90", "0", "0"});
+  translate("series.wms", "moved.vrt", {"-a_ullr", "-90", "45", "90", "-45"});
+  std::ofstream(path("alpha.vrt"))
+      << R"(<VRTDataset rasterXSize="4096" rasterYSize="2048"><GeoTransform>-180,0.087890625,0,90,0,-0.087890625
+         </GeoTransform><VRTRasterBand band="1"><SimpleSource><SourceFilename relativeToVRT="1">series.wms
+         </SourceFilename><SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="4096" ySize="2048"/><DstRect
+         xOff="0" yOff="0" xSize="4096" ySize="2048"/></SimpleSource></VRTRasterBand><VRTRasterBand band="2">
+         <ColorInterp>Alpha</ColorInterp><ComplexSource><SourceFilename relativeToVRT="1">series.wms</SourceFilename>
+         <SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="4096" ySize="2048"/><DstRect xOff="0" yOff="0"
+         xSize="4096" ySize="2048"/><ScaleOffset>255</ScaleOffset><ScaleRatio>0</ScaleRatio><NODATA>0</NODATA>
+         </ComplexSource></VRTRasterBand></VRTDataset>)";
+  for (const char* name : {"built.vrt", "none.vrt", "part.vrt", "moved.vrt", "alpha.vrt"}) {
+    const ServiceDescription described = describe(name);
+    EXPECT_FALSE(described.reference || described.service) << name;
+    EXPECT_THAT(described.reason, HasSubstr("capabilities")) << name;
+  }
 }
 
 }  // namespace
