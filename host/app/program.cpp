@@ -171,7 +171,7 @@ class Show {
     return {};
   }
 
-  [[nodiscard]] std::size_t failedScripts() const { return loop_->failedScripts(); }
+  [[nodiscard]] std::size_t failedScripts() const { return session_->failedScripts(); }
 
   /// Runs, and closes all files whatever happened; the first error.
   Result<void> run() {

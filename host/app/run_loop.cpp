@@ -95,8 +95,7 @@ bool RunLoop::awaitScripts() {
   }
   while (parts_.session.hasWaitingScripts() && !isStopped()) {
     std::this_thread::sleep_for(settlePause);
-    const std::size_t failed = parts_.session.resumeScripts();
-    failedScripts_ += frames_ == 0 ? failed : 0;
+    parts_.session.resumeScripts();
   }
   return true;
 }

@@ -40,8 +40,6 @@ class RunLoop {
   /// Errors: a frame cannot be drawn, written or, with --record, recorded; interrupted before an end that was asked
   /// for; without a window and --frames, the recording of --play was paused for good.
   [[nodiscard]] Result<void> run();
-  /// Of those begun before the first frame, how many scripts failed off screen after they had waited for something.
-  [[nodiscard]] std::size_t failedScripts() const { return failedScripts_; }
   /// To be called from within run, by input.
   void quit() { quit_ = true; }
 
@@ -67,7 +65,6 @@ class RunLoop {
   ui::Caption caption_;
   std::uint64_t frames_ = 0;    ///< done
   std::uint64_t drawings_ = 0;  ///< of them, with those of --settle
-  std::size_t failedScripts_ = 0;
   Clock::time_point lastTold_ = Clock::now();
   bool quit_ = false;
   bool hasTimedOut_ = false;  ///< a frame was not complete in time

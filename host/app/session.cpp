@@ -46,17 +46,16 @@ Result<void> Session::advance() {
   return record(seconds);
 }
 
-std::size_t Session::resumeScripts() {
+void Session::resumeScripts() {
   if (!hasWaitingScripts()) {
-    return 0;
+    return;
   }
-  const std::vector<Error> errors = application_.scripts().resumeWaiting();
-  for (const Error& error : errors) {
+  for (const Error& error : application_.scripts().resumeWaiting()) {
     log::error("{}", error.message());
+    failedScripts_ += wallSeconds() == 0.0 ? 1 : 0;
   }
   // They may have set the time, or moved nodes.
   application_.scene().evaluate(application_.clock().time());
-  return errors.size();
 }
 
 Result<void> Session::checkPlayback() const {

@@ -28,10 +28,12 @@ class Session {
   /// start. Errors: what `--record` names cannot be written any more; a recording that a script began ends then, and
   /// nothing else does.
   [[nodiscard]] Result<void> advance();
-  /// Scripts that waited for something go on, also between two drawings of a frame. How many of them failed.
-  std::size_t resumeScripts();
+  /// Scripts that waited for something go on, also between two drawings of a frame.
+  void resumeScripts();
   /// Whether one still waits.
   [[nodiscard]] bool hasWaitingScripts() const { return application_.scripts().hasWaiting(); }
+  /// How many failed after they had waited, if that was before the second frame: they belong to the scene's start.
+  [[nodiscard]] std::size_t failedScripts() const { return failedScripts_; }
   /// Lifts a camera that no recording moves out of terrain that was loaded since `advance`. Whether that moved it.
   bool keepClear();
   /// Writes the end of what is recorded.
@@ -53,6 +55,7 @@ class Session {
   Application& application_;
   std::optional<std::filesystem::path> asked_;  ///< the recording of `--record`
   scripting::FrameTimer timer_;
+  std::size_t failedScripts_ = 0;
   double deltaSeconds_ = 0.0;
   bool isPlayed_ = false;  ///< a recording moved the camera in this frame
 };
