@@ -129,18 +129,6 @@ TEST_F(LateLayersTest, TheGlobeMovesToAnotherPoolAllTheSame) {
   }));
 }
 
-TEST_F(LateLayersTest, TheGlobeMovesToAPoolThatIsTooSmall) {
-  look(0.1, 0.2, 6.6e6);
-  const std::string fine = uniformRaster("local.tif", local, 4096);
-  addGlobe({{"ColorLayers", listOf({fileLayer("World", document_), fileLayer("Local", fine)})}});
-  ASSERT_TRUE(framesUntil([&] { return shows(local); }));
-  setModuleProperty("TexturePoolSize", 64);
-  frame();
-  const std::string moves = unsettled();
-  EXPECT_NE(moves.find("another size"), std::string::npos) << moves;
-  EXPECT_TRUE(framesUntil([&] { return unsettled() != moves; }));
-}
-
 TEST_F(LateLayersTest, TheGlobeIsSmoothUntilItsHeightsAreThere) {
   RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({fileLayer("Local", uniformRaster("local.tif", local))})},
                                      {"HeightLayers", listOf({fileLayer("World", document_)})}});
