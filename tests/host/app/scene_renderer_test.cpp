@@ -1,5 +1,6 @@
 #include "host/app/scene_renderer.h"
 
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
