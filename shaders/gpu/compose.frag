@@ -10,6 +10,9 @@
 #include "layers/relief.glsl"
 #{layers}
 
+// Whether every tile lies texel for texel in the composite, and no layer's settings change what it shows.
+const bool unchanged = #{unchanged};
+
 struct Placement {
     vec4 transform;  // raw tile's texture coordinate = xy + zw * pixel
     float slot;      // of the raw tiles' array, or the relief tiles'; below 0: the layer has nothing here
@@ -60,10 +63,15 @@ vec4 composePart(vec4 below, int i, int sampling, int mode, int adjustment) {
         }
         vec4 transform = part.placements[i].transform;
         vec3 place = vec3(transform.xy + transform.zw * gl_FragCoord.xy, part.placements[i].slot);
-        own = sampling == samplingTile ? textureLod(rawTiles, place, 0.0)
-                                       : reliefColour(layers[i], sampling, part.placements[i], place);
+        if (sampling != samplingTile) {
+            own = reliefColour(layers[i], sampling, part.placements[i], place);
+        } else if (unchanged) {
+            own = texelFetch(rawTiles, ivec3(ivec2(gl_FragCoord.xy), int(part.placements[i].slot)), 0);
+        } else {
+            own = textureLod(rawTiles, place, 0.0);
+        }
     }
-    return composeLayer(layers[i], mode, adjustment, own, below);
+    return composeLayer(layers[i], mode, adjustment, unchanged, own, below);
 }
 
 void main() {

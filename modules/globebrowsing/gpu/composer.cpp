@@ -81,6 +81,13 @@ bool isHidingAll(std::span<const CompositionPart> parts) {
          top.layer->group() != LayerGroupId::WaterMasks && top.layer->showsTilesUnchanged();
 }
 
+/// Whether each is what its tile shows there, texel for texel, if mixed with what is below.
+bool areUnchanged(std::span<const CompositionPart> parts) {
+  return std::all_of(parts.begin(), parts.end(), [](const CompositionPart& part) {
+    return part.layer->settings().isIdentity() && (part.tile == nullptr || part.transform == UnitSquareTransform{});
+  });
+}
+
 void upload(const graphics::Texture& array, std::uint32_t slot, const ColourTile& tile) {
   glTextureSubImage3D(array.id(), 0, 0, 0, static_cast<GLint>(slot), side, side, 1, GL_RGBA, GL_UNSIGNED_BYTE,
                       tile.pixels().rgba.data());
@@ -127,8 +134,9 @@ std::size_t Composer::bytesPerComposite() {
 }
 
 double Composer::estimatedMilliseconds(std::span<const CompositionPart> parts) const {
-  const double texelsPerMillisecond = isSoftware_ ? 4e5 : 1e7;
-  const std::size_t fetches = isHidingAll(parts) ? 1 : parts.size() + 1;
+  const double texelsPerMillisecond = isSoftware_ ? 3e5 : 1e7;
+  const std::size_t perPart = isHidingAll(parts) ? 0 : areUnchanged(parts) ? 1 : 2;
+  const std::size_t fetches = perPart * parts.size() + 1;
   return static_cast<double>(fetches) * side * side / texelsPerMillisecond;
 }
 
@@ -255,7 +263,7 @@ bool Composer::compose(std::uint32_t slot, CompositeKind kind, std::span<const C
   framebuffer_.attachLayer(GL_COLOR_ATTACHMENT0, composites_, static_cast<int>(slot));
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   glViewport(0, 0, side, side);
-  glUseProgram(programs_.program(kind));
+  glUseProgram(programs_.program(kind, areUnchanged(parts)));
   glBindTextureUnit(0, rawTiles_.id());
   glBindSampler(0, rawSampler_.id());
   relief_.bind();

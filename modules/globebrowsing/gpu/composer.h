@@ -90,9 +90,9 @@ class Composer {
   /// No composite can have more layers with tiles.
   [[nodiscard]] std::uint32_t rawTileCapacity() const { return rawSlots_.capacity(); }
 
-  /// What composing them takes: a fetch per texel and layer, none where the topmost hides all others, and once more for
-  /// the half-size levels, at the rates of a software renderer (400 million a second, measured) or of a modest graphics
-  /// card.
+  /// What composing them takes: a fetch per texel and layer, counted twice where tiles are scaled or settings change
+  /// them, none where the topmost hides all others, and once more for the half-size levels, at the rates of a software
+  /// renderer (300 million a second, measured) or of a modest graphics card.
   [[nodiscard]] double estimatedMilliseconds(std::span<const CompositionPart> parts) const;
 
   static constexpr int levelCount = 4;

@@ -84,7 +84,7 @@ CompositionPrograms::CompositionPrograms(graphics::Graphics& graphics)
     : graphics_(graphics), loops_(!graphics.limits().software) {}
 
 Result<void> CompositionPrograms::request() {
-  Result<graphics::ProgramDescription> loop = describe("compose/loop", loopLayers, std::string(loopBody));
+  Result<graphics::ProgramDescription> loop = describe("compose/loop", loopLayers, std::string(loopBody), Parts::Any);
   Result<graphics::ShaderSource> vertex = graphics_.templates().load("gpu/fill.vert");
   Result<graphics::ShaderSource> fragment = graphics_.templates().load("gpu/half_size.frag");
   for (const Error* error :
@@ -107,13 +107,14 @@ void CompositionPrograms::setLooping(bool loops) {
 }
 
 Result<graphics::ProgramDescription> CompositionPrograms::describe(std::string key, std::size_t layers,
-                                                                   std::string body) const {
+                                                                   std::string body, Parts parts) const {
   const int count = std::max(1, static_cast<int>(layers));
   const graphics::Substitutions substitutions{
       {"structs", glslStruct(layerFields(), "Layer")},
       {"constants", glslLayerConstants()},
       {"layers", glslLayerBlock({"Layer", "LayerBlock", "layers", layerBlock, count})},
       {"count", fmt::format("{}", count)},
+      {"unchanged", parts == Parts::Unchanged ? "true" : "false"},
       {"body", std::move(body)}};
   Result<graphics::ShaderSource> vertex = graphics_.templates().load("gpu/fill.vert");
   if (!vertex) {
@@ -125,27 +126,31 @@ Result<graphics::ProgramDescription> CompositionPrograms::describe(std::string k
   });
 }
 
+graphics::ProgramHandle CompositionPrograms::request(const StructureKey& key, Parts parts) {
+  using Urgency = graphics::ProgramCache::Urgency;
+  const bool isFaster = parts == Parts::Unchanged;
+  // The templates were read once without error, and a structure adds nothing that can be missing.
+  Result<graphics::ProgramDescription> description =
+      describe((isFaster ? "compose unchanged/" : "compose/") + key.text(), key.layers().size(), unrolled(key), parts);
+  return description ? graphics_.programs().request(*std::move(description), isFaster ? Urgency::Later : Urgency::Now)
+                     : graphics::ProgramHandle();
+}
+
 void CompositionPrograms::setStructure(CompositeKind kind, const StructureKey& key) {
   Kind& own = kinds_[static_cast<std::size_t>(kind)];
-  if (own.requested && own.key == key) {
-    return;
-  }
-  own.key = key;
-  own.requested = true;
-  // The templates were read once without error, and a structure adds nothing that can be missing.
-  if (Result<graphics::ProgramDescription> description =
-          describe("compose/" + key.text(), key.layers().size(), unrolled(key))) {
-    own.program = graphics_.programs().request(*std::move(description));
+  if (!own.requested || own.key != key) {
+    own = {key, request(key, Parts::Any), request(key, Parts::Unchanged), true};
   }
 }
 
-GLuint CompositionPrograms::program(CompositeKind kind) const {
+GLuint CompositionPrograms::program(CompositeKind kind, bool areUnchanged) const {
   const Kind& own = kinds_[static_cast<std::size_t>(kind)];
   if (halfSize() == 0) {
     return 0;
   }
   if (const GLuint exact = graphics_.programs().ready(own.program)) {
-    return exact;
+    const GLuint faster = areUnchanged ? graphics_.programs().ready(own.unchanged) : 0;
+    return faster != 0 ? faster : exact;
   }
   return mayLoop(own) ? graphics_.programs().ready(loop_) : 0;
 }

@@ -39,7 +39,11 @@ static_assert(sizeof(PlacementHead) == 32);
 /// The programs that compose. For each structure key one is generated and built in the background. Until it is ready
 /// one that loops over the layers at run time composes, but not with a software renderer: that runs all branches, and
 /// takes longer for a composite (120 ms for three layers; their own program 8) than a frame may, while the own program
-/// is there in about half a second. Settings are uniforms and never recompile. Owned by Composer. Render thread only.
+/// is there in about half a second. Settings are uniforms and never recompile.
+///
+/// After a structure's own program a second is built that takes less than half as long, for composites whose tiles lie
+/// in them texel for texel and whose layers' settings change nothing: most composites. It draws the same, and nothing
+/// ever waits for it. Owned by Composer. Render thread only.
 class CompositionPrograms {
  public:
   /// As many layers as the looping program takes; more wait for the program of their own.
@@ -54,8 +58,9 @@ class CompositionPrograms {
   /// Asks for the program of that kind's structure. Cheap when nothing changed.
   void setStructure(CompositeKind kind, const StructureKey& key);
 
-  /// The structure's own, or the looping one if that may stand in; 0 while none is ready.
-  [[nodiscard]] GLuint program(CompositeKind kind) const;
+  /// The structure's own, or the looping one if that may stand in; 0 while none is ready. For parts that are unchanged
+  /// the program made for those, where it is ready.
+  [[nodiscard]] GLuint program(CompositeKind kind, bool areUnchanged = false) const;
   /// Draws a half-size level; 0 while it is not ready, and then so are all others.
   [[nodiscard]] GLuint halfSize() const { return graphics_.programs().ready(halfSize_); }
   /// Whether the structure's own program is ready.
@@ -71,11 +76,14 @@ class CompositionPrograms {
   struct Kind {
     StructureKey key;
     graphics::ProgramHandle program;
+    graphics::ProgramHandle unchanged;
     bool requested = false;
   };
 
-  [[nodiscard]] Result<graphics::ProgramDescription> describe(std::string key, std::size_t layers,
-                                                              std::string body) const;
+  enum class Parts { Any, Unchanged };
+  [[nodiscard]] Result<graphics::ProgramDescription> describe(std::string key, std::size_t layers, std::string body,
+                                                              Parts parts) const;
+  [[nodiscard]] graphics::ProgramHandle request(const StructureKey& key, Parts parts);
   /// Whether the looping program may compose that kind.
   [[nodiscard]] bool mayLoop(const Kind& kind) const { return loops_ && kind.key.layers().size() <= loopLayers; }
 

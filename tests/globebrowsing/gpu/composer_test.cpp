@@ -255,6 +255,56 @@ TEST_F(ComposerTest, TheLoopingProgramDrawsWhatTheUnrolledOneDoes) {
   EXPECT_LE(worst, 1);
 }
 
+TEST_F(ComposerTest, TheFasterProgramDrawsWhatTheStructuresOwnDoes) {
+  Layer* lower = addTileLayer();
+  Layer* solid = addSolidLayer({0.9, 0.2, 0.1});
+  Layer* upper = addTileLayer();
+  solid->opacity.put(0.5);
+  upper->opacity.put(0.8);
+  for (int mode = 0; mode < static_cast<int>(blendModeNames().size()); ++mode) {
+    upper->blendMode.put(mode);
+    upper->adjustmentType.put(mode % static_cast<int>(adjustmentNames().size()));
+    upper->chromaKeyTolerance.put(0.4);
+    useStructure();
+    const CompositionPrograms& programs = composer_->programs();
+    ASSERT_NE(programs.program(CompositeKind::Base, true), programs.program(CompositeKind::Base));
+    const auto lowerTile = randomTile();
+    const auto upperTile = randomTile();
+    std::vector<CompositionPart> parts{part(lower, lowerTile.get()), part(solid, nullptr),
+                                       part(upper, upperTile.get())};
+    const double faster = composer_->estimatedMilliseconds(parts);
+    ASSERT_TRUE(compose(0, parts));
+    // A shift that no byte shows, but then tiles are scaled.
+    parts[0].transform.offset.x = 1e-9;
+    EXPECT_LT(faster, composer_->estimatedMilliseconds(parts));
+    ASSERT_TRUE(compose(1, parts));
+    for (int level = 0; level < Composer::levelCount; ++level) {
+      const std::vector<std::uint8_t> unchanged = read(0, level);
+      const std::vector<std::uint8_t> general = read(1, level);
+      for (std::size_t i = 0; i < general.size(); ++i) {
+        ASSERT_NEAR(int{unchanged[i]}, int{general[i]}, 1)
+            << blendModeNames()[static_cast<std::size_t>(mode)] << ", level " << level << ", byte " << i;
+      }
+    }
+  }
+}
+
+TEST_F(ComposerTest, ScaledTilesAndSettingsAreNotTakenForUnchanged) {
+  Layer* lower = addTileLayer();
+  Layer* upper = addTileLayer();
+  upper->opacity.put(0.7);
+  useStructure();
+  const auto lowerTile = randomTile();
+  const auto upperTile = randomTile();
+  const UnitSquareTransform quarter{{0.5, 0.25}, {0.25, 0.25}};
+  ASSERT_TRUE(compose(0, {part(lower, lowerTile.get()), part(upper, upperTile.get())}));
+  ASSERT_TRUE(compose(1, {part(lower, lowerTile.get()), part(upper, upperTile.get(), quarter)}));
+  EXPECT_NE(read(0), read(1)) << "scaled";
+  upper->gamma.put(2.0);
+  ASSERT_TRUE(compose(1, {part(lower, lowerTile.get()), part(upper, upperTile.get())}));
+  EXPECT_NE(read(0), read(1)) << "gamma";
+}
+
 TEST_F(ComposerTest, TheLoopingProgramStandsInOnlyWhereItMay) {
   for (const bool loops : {true, false}) {
     composer_->programs().setLooping(loops);
