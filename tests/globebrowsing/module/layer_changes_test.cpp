@@ -35,14 +35,16 @@ TEST_F(LayerChangesTest, TogglingRequestsAProgramAndDrawsTheOldCompositesUntilTh
     changed = changed || now[0] > 0;
   }));
   EXPECT_THAT(centre(), colour(255, 0, 0));
-  EXPECT_EQ(statistics_.programs.built.load(), built + 1);
+  graphics_->programs().waitAll();
+  EXPECT_EQ(statistics_.programs.built.load(), built + 2) << "for tiles in general, and for those that fit as they are";
 
   for (int n = 0; n < 3; ++n) {
     red->enabled.put(n % 2 == 1);
     ASSERT_TRUE(settle());
     EXPECT_THAT(centre(), n % 2 == 1 ? colour(255, 0, 0) : colour(0, 200, 0));
   }
-  EXPECT_EQ(statistics_.programs.built.load(), built + 1) << "both programs are kept";
+  graphics_->programs().waitAll();
+  EXPECT_EQ(statistics_.programs.built.load(), built + 2) << "the programs of both structures are kept";
 }
 
 TEST_F(LayerChangesTest, SettingsRecomposeAndNeverRecompile) {
