@@ -33,7 +33,7 @@ def toggle_frames():
 
 @benchmark("toggle-50-seconds", "s", AT_MOST, 1)
 def toggle_seconds():
-    """Seconds until all of the view shows it: median of 5."""
+    """Seconds until all of the view shows it; the most of 5."""
     return layers()["toggle_s"]
 
 

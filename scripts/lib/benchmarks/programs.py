@@ -21,8 +21,8 @@ class Failed(Exception):
     """A benchmark that gives no figure, and why."""
 
 
-def run(program, *arguments, stdin="", environment=None, timeout=1800, remedy="build it"):
-    """Runs a program of the build with that text to read; its standard output."""
+def run(program, *arguments, stdin="", environment=None, timeout=1800, remedy="build it", accepted=(0,)):
+    """Runs a program of the build with that text to read; its standard output, if it ends with an accepted code."""
     path = BIN / program
     if not path.exists():
         raise Failed(f"build/release/bin/{program}: no such program; {remedy}")
@@ -31,7 +31,7 @@ def run(program, *arguments, stdin="", environment=None, timeout=1800, remedy="b
                               input=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     except subprocess.TimeoutExpired:
         raise Failed(f"{program}: not done after {timeout} s") from None
-    if done.returncode != 0:
+    if done.returncode not in accepted:
         lines = (done.stderr or done.stdout).strip().splitlines()
         raise Failed(f"{program}: exit {done.returncode}: {lines[-1] if lines else 'no message'}")
     return done.stdout
