@@ -239,6 +239,16 @@ TEST_F(CommandLine, WithoutADisplayItSaysSo) {
   EXPECT_TRUE(fs::exists(in("picture.png")));
 }
 
+TEST_F(CommandLine, AnOpenGLThatIsTooOldIsNamed) {
+  emptyScene();
+  const Outcome outcome = run("empty.asset --headless --size 8x8 --output picture.png", "MESA_GL_VERSION_OVERRIDE=3.3");
+  EXPECT_EQ(outcome.code, 1);
+  for (const char* part : {"OpenGL 4.5 core is needed", "found 3.3", "install a driver"}) {
+    EXPECT_THAT(outcome.errors, HasSubstr(part));
+  }
+  EXPECT_FALSE(fs::exists(in("picture.png")));
+}
+
 TEST_F(CommandLine, SettingsAndScriptsReachTheScene) {
   emptyScene();
   write("check.lua", R"(
@@ -302,6 +312,19 @@ TEST_F(CommandLine, ARecordingIsPlayedToItsEnd) {
   ASSERT_EQ(outcome.code, 0) << outcome.errors;
   EXPECT_TRUE(fs::exists(in("frames/frame_000005.png")));
   EXPECT_FALSE(fs::exists(in("frames/frame_000006.png")));
+}
+
+TEST_F(CommandLine, ADamagedLineOfARecordingIsNamed) {
+  emptyScene();
+  write("flight.osrectxt",
+        "OpenSpace_record/playback03.00A\n"
+        "camera 0.0 0.0 0.0 0.0 5000.0 0.0 0.0 0.0 1.0 1.0 - Place\n"
+        "camera 0.5 half 0.0 0.0 3000.0 0.0 0.0 0.0 1.0 1.0 - Place\n");
+  const Outcome outcome = run("empty.asset --headless --size 8x8 --play flight.osrectxt");
+  EXPECT_EQ(outcome.code, 1);
+  for (const char* part : {"flight.osrectxt:3", "'half'", "correct the line"}) {
+    EXPECT_THAT(outcome.errors, HasSubstr(part));
+  }
 }
 
 TEST_F(CommandLine, ARecordingThatStopsItselfEndsTheRun) {

@@ -196,17 +196,22 @@ TEST_F(ShaderCacheFolder, IsAnErrorWhereNoneCanBe) {
   EXPECT_EQ(std::getenv(variable), nullptr);
 }
 
-TEST(WindowContext, NamesTheReasonWithoutADisplay) {
-  if (std::getenv("DISPLAY") != nullptr) {
-    const auto window = WindowContext::create({.visible = false});
-    if (window) {
-      ASSERT_TRUE((*window)->makeCurrent().has_value());
-      EXPECT_GE(epoxy_gl_version(), 45);
-      EXPECT_TRUE((*window)->createShared().has_value());
-      EXPECT_EQ((*window)->framebufferSize(), glm::ivec2(1280, 720));
-      return;
-    }
+// CTest runs this one on a display of its own (window.context).
+TEST(WindowContext, OpensOnADisplay) {
+  if (std::getenv("DISPLAY") == nullptr) {
+    GTEST_SKIP() << "no display";
   }
+  const auto window = WindowContext::create({.visible = false});
+  ASSERT_TRUE(window) << window.error().message();
+  ASSERT_TRUE((*window)->makeCurrent().has_value());
+  EXPECT_GE(epoxy_gl_version(), 45);
+  EXPECT_TRUE((*window)->createShared().has_value());
+  EXPECT_EQ((*window)->framebufferSize(), glm::ivec2(1280, 720));
+}
+
+TEST(WindowContext, NamesTheReasonWithoutADisplay) {
+  ::setenv("DISPLAY", ":987", 1);
+  ::unsetenv("WAYLAND_DISPLAY");
   const auto window = WindowContext::create();
   ASSERT_FALSE(window.has_value());
   EXPECT_NE(window.error().what.find("no window can be opened"), std::string::npos) << window.error().what;
