@@ -22,6 +22,21 @@ print_help() { sed -n '2,${/^#/!q;s/^# \{0,1\}//;p}' "$0"; }
 # The host's ${CACHE}. Prepared data live in its folder data.
 cache_folder() { printf '%s/meridian\n' "${XDG_CACHE_HOME:-$HOME/.cache}"; }
 
+# Whether that program can open a window; says why not. A display may be named and be gone, or not be ours (sudo).
+opens_window() {
+  local program=$1 nothing answer
+  if [[ -z ${DISPLAY-} && -z ${WAYLAND_DISPLAY-} ]]; then
+    say "no display"
+    return 1
+  fi
+  nothing=$(mktemp --suffix .asset)
+  answer=$("$program" "$nothing" --frames 1 --size 16x16 --log warning 2>&1) || true
+  rm -f "$nothing"
+  [[ $answer == *"there is no window"* ]] || return 0
+  say "no window: $answer"
+  return 1
+}
+
 # Packages of the named groups of packages.txt.
 packages_of() {
   local group
