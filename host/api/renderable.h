@@ -31,7 +31,7 @@ class Renderable : public PropertyOwner {
   explicit Renderable(std::string type);
 
   /// As the asset calls it: "RenderableGlobe".
-  [[nodiscard]] const std::string& type() const { return type_; }
+  [[nodiscard]] const std::string& type() const { return typeName.get(); }
 
   virtual Result<void> initializeGraphics(graphics::Graphics& /*graphics*/) { return {}; }
   virtual void deinitializeGraphics() {}
@@ -43,6 +43,8 @@ class Renderable : public PropertyOwner {
   [[nodiscard]] virtual double boundingSphere() const { return 0.0; }
   /// Null unless it is something to stand on.
   [[nodiscard]] virtual Ground* ground() { return nullptr; }
+  /// The identifier of the node whose light falls on it; empty: the host decides.
+  [[nodiscard]] virtual std::string_view lightSourceNode() const { return {}; }
   /// Appends whom the data are to be credited to that the last frame showed, those that are in the list already left
   /// out. Asked for every frame; the texts are good until the next update.
   virtual void addAttributions(std::vector<std::string_view>& /*list*/) const {}
@@ -61,9 +63,11 @@ class Renderable : public PropertyOwner {
 
   BoolProperty enabled{{"Enabled", "Enabled", "Whether it is drawn"}, true};
   FloatProperty opacity{{"Opacity", "Opacity", "0 is invisible, 1 opaque"}, 1.0, {0.0, 1.0}};
+  FloatProperty fade{{"Fade", "Fade", "Multiplies Opacity; what scripts use to fade"}, 1.0, {0.0, 1.0}};
+  StringProperty typeName{{"Type", "Type", "As the asset calls it", true}};
 
- private:
-  std::string type_;
+  /// 0 is invisible, 1 opaque: what it is drawn with.
+  [[nodiscard]] double effectiveOpacity() const { return opacity.get() * fade.get(); }
 };
 
 /// What a factory gets beside the table.
@@ -76,9 +80,11 @@ struct RenderableRequest {
 
 using RenderableFactory = std::function<Result<std::unique_ptr<Renderable>>(const RenderableRequest&)>;
 
-inline Renderable::Renderable(std::string type) : PropertyOwner("Renderable"), type_(std::move(type)) {
-  addProperty(enabled);
-  addProperty(opacity);
+inline Renderable::Renderable(std::string type) : PropertyOwner("Renderable") {
+  typeName.put(std::move(type));
+  for (Property* property : std::initializer_list<Property*>{&typeName, &enabled, &opacity, &fade}) {
+    addProperty(*property);
+  }
 }
 
 }  // namespace meridian

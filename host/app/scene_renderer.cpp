@@ -131,7 +131,7 @@ void SceneRenderer::gatherAttributions() {
 }
 
 void SceneRenderer::drawItems(const FrameContext& frame) {
-  const auto isOpaque = [](const Item* item) { return item->renderable->opacity.get() >= 1.0; };
+  const auto isOpaque = [](const Item* item) { return item->renderable->effectiveOpacity() >= 1.0; };
   std::sort(order_.begin(), order_.end(), [&](const Item* a, const Item* b) {
     if (isOpaque(a) != isOpaque(b)) {
       return isOpaque(a);

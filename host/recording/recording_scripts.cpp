@@ -6,6 +6,7 @@
 
 #include "host/api/log.h"
 #include "host/recording/move_file.h"
+#include "host/recording/session_recording.h"
 
 namespace meridian::recording {
 
@@ -68,6 +69,31 @@ Result<void> stopRecording(SessionControl& control, const RecordingPaths& paths,
   });
 }
 
+/// A copy of the present version beside the file, named after both versions as OpenSpace names it.
+Result<void> convertRecording(const RecordingPaths& paths, Arguments arguments) {
+  const Result<std::string> name = textAt(arguments, 0);
+  const Result<fs::path> file = name.and_then(paths.readable);
+  if (!file) {
+    return tl::make_unexpected(file.error());
+  }
+  const auto recording = readSessionRecording(*file);
+  if (!recording) {
+    return tl::make_unexpected(recording.error());
+  }
+  const std::string present = SessionRecording{}.version;
+  if (recording->version == present) {
+    log::info("{}: the recording is of version {} already", file->string(), present);
+    return {};
+  }
+  fs::path copy(*name);
+  copy.replace_filename(copy.stem().string() + '_' + recording->version + '-' + present + ".osrectxt");
+  return paths.writable(copy.string()).and_then([&](const fs::path& whole) {
+    return makeFolderOf(whole).and_then([&] { return writeSessionRecording(*recording, whole); }).map([&] {
+      log::info("{}: converted from version {} to {}", whole.string(), recording->version, present);
+    });
+  });
+}
+
 ScriptFunction playback(SessionControl& control, const RecordingPaths& paths, std::string name) {
   return {std::move(name),
           "file, loop?, waitForTiles?, framesPerSecond?",
@@ -95,6 +121,8 @@ ScriptLibrary recordingLibrary(SessionControl& control, const RecordingPaths& pa
   add("startRecordingAscii", "file", "As startRecording.", 1, 1, start);
   add("stopRecording", "file?, format?, overwrite?", "Ends the recording and puts it there.", 0, 3,
       [&control, paths](Arguments a) { return none(stopRecording(control, paths, a)); });
+  add("fileFormatConversion", "file", "Writes a copy of the present version beside a recording.", 1, 1,
+      [paths](Arguments a) { return none(convertRecording(paths, a)); });
   for (const char* name :
        {"startPlayback", "startPlaybackApplicationTime", "startPlaybackRecordedTime", "startPlaybackSimulationTime"}) {
     library.functions.push_back(playback(control, paths, name));

@@ -81,7 +81,11 @@ Result<SessionRecording> parseSessionRecording(std::string_view content, std::st
   } else if (!rest.empty()) {
     return failure("expected the end of the header line", firstLine, "record the session again");
   }
-  return mode == 'A' ? parseAsciiBody(rest, number, where) : parseBinaryBody(rest, number, where);
+  auto parsed = mode == 'A' ? parseAsciiBody(rest, number, where) : parseBinaryBody(rest, number, where);
+  if (parsed) {
+    parsed->version = version;
+  }
+  return parsed;
 }
 
 Result<SessionRecording> readSessionRecording(const std::filesystem::path& file) {

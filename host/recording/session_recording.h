@@ -38,7 +38,8 @@ struct ScriptEntry {
 /// A session recording: OpenSpace's format, versions 01.00, 02.00 and 03.00, ASCII and binary.
 struct SessionRecording {
   using Entry = std::variant<CameraEntry, ScriptEntry>;
-  std::vector<Entry> entries;  ///< timestamps ascend
+  std::vector<Entry> entries;     ///< timestamps ascend
+  std::string version = "03.00";  ///< of the file that it was read from
 
   [[nodiscard]] double duration() const;  ///< timestamp of the last entry; 0 without any
 };

@@ -31,6 +31,15 @@ const SceneNode* placedByEphemeris(const SceneNode& node) {
 }  // namespace
 
 glm::dvec3 Scene::lightDirection(const SceneNode& target) const {
+  const std::string_view wanted = target.renderable() != nullptr ? target.renderable()->lightSourceNode() : "";
+  if (!wanted.empty() && wanted != target.identifier()) {
+    if (const SceneNode* source = node(wanted)) {
+      return unitOrX(relativeTransform(*source, target).translation);
+    }
+    warnOnce(
+        "LightSourceNode of " + target.identifier(),
+        target.identifier() + ": there is no node \"" + std::string(wanted) + "\" to be its light; taking the Sun");
+  }
   if (const SceneNode* source = node("Sun"); source != nullptr && source != &target) {
     return unitOrX(relativeTransform(*source, target).translation);
   }

@@ -79,9 +79,10 @@ class Scene final : public PropertyOwner {
   /// Logs a warning unless there was one of that subject before.
   void warnOnce(const std::string& subject, const std::string& message) const;
 
-  /// Unit, in the node's own frame, towards the light: the node `Sun` if there is one; else the ephemeris' Sun, for a
-  /// node placed (itself or through an ancestor) by a SpiceTranslation whose position is known; else away from the
-  /// node's world position reversed, that is towards the origin; +x where even that says nothing.
+  /// Unit, in the node's own frame, towards the light: the node that its renderable names, else `Sun`, if there is one;
+  /// else the ephemeris' Sun, for a node placed (itself or through an ancestor) by a SpiceTranslation whose position is
+  /// known; else away from the node's world position reversed, that is towards the origin; +x where even that says
+  /// nothing.
   [[nodiscard]] glm::dvec3 lightDirection(const SceneNode& node) const;
 
   /// The keys of a node's table, and of its `GUI` and `Transform`.

@@ -41,6 +41,10 @@ const std::vector<ForeignFunctions>& foreignFunctions() {
       {"dashboard", "dashboards", "dashboardItems", Table{}},
       {"sessionRecording", "pictures of a playback by scripts, --output writes them",
        "enableTakeScreenShotDuringPlayback disableTakeScreenShotDuringPlayback"},
+      {"keyframeRecording", "recordings of keyframes",
+       "newSequence addCameraKeyframe addScriptKeyframe removeKeyframe updateKeyframe moveKeyframe saveSequence "
+       "loadSequence play pause"},
+      {"keyframeRecording", "recordings of keyframes", "keyframes", Table{}},
       {"scriptScheduler", "scheduled scripts",
        "loadFile loadScheduledScript setModeApplicationTime setModeRecordedTime "
        "setModeSimulationTime clear"},
@@ -69,7 +73,7 @@ const std::vector<ForeignFunctions>& foreignFunctions() {
       {"systemCapabilities", "other systems", "os fullOperatingSystem", "Linux"},
       {"exoplanets", "exoplanets", "addExoplanetSystem removeExoplanetSystem"},
       {"exoplanets", "exoplanets", "listOfExoplanets systemList", Table{}},
-      {"spice", "SPICE kernels, positions come from series", "unloadKernel"},
+      {"spice", "SPICE kernels, positions come from series", "unloadKernel position rotationMatrix convertTLEtoSPK"},
       {"spice", "SPICE kernels, positions come from series", "loadKernel", 0.0},
       {"spice", "SPICE kernels, positions come from series", "kernels spiceBodies", Table{}},
   };

@@ -32,7 +32,7 @@ Property* PropertyIndex::find(std::string_view uri) {
 std::vector<Property*> PropertyIndex::match(const PropertyPattern& pattern) {
   std::vector<Property*> matching;
   for (const Entry& entry : entries()) {
-    if (pattern.matches(entry.uri, *entry.property)) {
+    if (pattern.matches(entry.uri, entry.property->owner())) {
       matching.push_back(entry.property);
     }
   }

@@ -74,8 +74,8 @@ Result<PropertyPattern> PropertyPattern::parse(std::string_view text) {
   return pattern;
 }
 
-bool PropertyPattern::matches(std::string_view uri, const Property& property) const {
-  return matchesText(uri) && (operator_ == Operator::None || matchesTags(property));
+bool PropertyPattern::matches(std::string_view uri, const PropertyOwner* innermost) const {
+  return matchesText(uri) && (operator_ == Operator::None || matchesTags(innermost));
 }
 
 bool PropertyPattern::matchesText(std::string_view uri) const {
@@ -91,8 +91,8 @@ bool PropertyPattern::matchesText(std::string_view uri) const {
   return uri.substr(0, uri.size() - after_.size()).find(before_) != std::string_view::npos;
 }
 
-bool PropertyPattern::matchesTags(const Property& property) const {
-  for (const PropertyOwner* owner = property.owner(); owner != nullptr; owner = owner->parent()) {
+bool PropertyPattern::matchesTags(const PropertyOwner* innermost) const {
+  for (const PropertyOwner* owner = innermost; owner != nullptr; owner = owner->parent()) {
     const bool first = hasTag(*owner, firstTag_);
     const bool second = operator_ != Operator::One && hasTag(*owner, secondTag_);
     const bool matches = operator_ == Operator::And       ? first && second

@@ -6,14 +6,14 @@
 #include "host/api/error.h"
 
 namespace meridian {
-class Property;
+class PropertyOwner;
 }
 
 namespace meridian::scripting {
 
-/// Which properties a script means.
+/// Which properties, or owners of some, a script means.
 ///
-///     URI                    that property
+///     URI                    that one
 ///     pre*post               pre occurs in the URI, and post ends it after that; an empty post: the URI begins with
 ///     pre {tag}.rest             some owner above (or of) the property has the tag, and the URI ends with ".rest"
 ///     {tag}.pre*post         as above, ".pre" may be anywhere
@@ -26,13 +26,14 @@ class PropertyPattern {
 
   /// Without tag and wildcard: names one property at most.
   [[nodiscard]] bool isExact() const { return operator_ == Operator::None && !hasWildcard_; }
-  [[nodiscard]] bool matches(std::string_view uri, const Property& property) const;
+  /// `innermost`: the first owner whose tags count, a property's own or the owner itself that the URI names.
+  [[nodiscard]] bool matches(std::string_view uri, const PropertyOwner* innermost) const;
 
  private:
   enum class Operator { None, One, And, Or, Without };
 
   [[nodiscard]] bool matchesText(std::string_view uri) const;
-  [[nodiscard]] bool matchesTags(const Property& property) const;
+  [[nodiscard]] bool matchesTags(const PropertyOwner* innermost) const;
 
   Operator operator_ = Operator::None;
   std::string firstTag_;

@@ -249,10 +249,12 @@ ScriptResult invertBoolean(const Context& context, Arguments arguments) {
   return {};
 }
 
+Result<PropertyPattern> patternFrom(Arguments arguments) {
+  return text(arguments, 0, "pattern").and_then([](const std::string& each) { return PropertyPattern::parse(each); });
+}
+
 ScriptResult listUris(const Context& context, Arguments arguments) {
-  const Result<std::string> wanted = text(arguments, 0, "pattern");
-  const Result<PropertyPattern> pattern =
-      wanted.and_then([](const std::string& each) { return PropertyPattern::parse(each); });
+  const Result<PropertyPattern> pattern = patternFrom(arguments);
   if (!pattern) {
     return tl::make_unexpected(pattern.error());
   }
@@ -260,6 +262,27 @@ ScriptResult listUris(const Context& context, Arguments arguments) {
   for (const Property* property : context.index->match(*pattern)) {
     uris.list.emplace_back(property->uri());
   }
+  return std::vector<Value>{std::move(uris)};
+}
+
+/// Those below `owner` whose URIs begin with `prefix`, each before its children.
+void addOwners(const PropertyOwner& owner, const std::string& prefix, const PropertyPattern& pattern, Table& uris) {
+  for (const PropertyOwner* child : owner.children()) {
+    const std::string uri = prefix + child->identifier();
+    if (pattern.matches(uri, child)) {
+      uris.list.emplace_back(uri);
+    }
+    addOwners(*child, uri + '.', pattern, uris);
+  }
+}
+
+ScriptResult listOwners(const Context& context, Arguments arguments) {
+  const Result<PropertyPattern> pattern = patternFrom(arguments);
+  if (!pattern) {
+    return tl::make_unexpected(pattern.error());
+  }
+  Table uris;
+  addOwners(*context.root, {}, *pattern, uris);
   return std::vector<Value>{std::move(uris)};
 }
 
@@ -308,6 +331,8 @@ ScriptLibrary propertyLibrary(PropertyOwner& root, PropertyIndex& index, Propert
             }},
            {"property", "pattern", "The URIs of all properties that a pattern means.", 1, 1,
             [context](Arguments a) { return listUris(context, a); }},
+           {"propertyOwner", "pattern", "The URIs of all property owners that a pattern means.", 1, 1,
+            [context](Arguments a) { return listOwners(context, a); }},
            {"stopPropertyBouncing", "uri", "Ends a bouncing movement.", 1, 1,
             [context](Arguments a) -> ScriptResult {
               const Result<std::string> uri = text(a, 0, "uri");

@@ -8,8 +8,8 @@
 namespace meridian::scripting {
 
 /// `openspace.*`: setPropertyValue, setPropertyValueSingle, propertyValue (and getPropertyValue),
-/// invertBooleanProperty, hasProperty, property, stopPropertyBouncing, fadeIn, fadeOut, toggleFade, addTag, removeTag.
-/// The arguments must outlive the library.
+/// invertBooleanProperty, hasProperty, property, propertyOwner, stopPropertyBouncing, fadeIn, fadeOut, toggleFade,
+/// addTag, removeTag. The arguments must outlive the library.
 ///
 /// setPropertyValue sets those of the matching properties that take the value's type. When none is left, or one refuses
 /// the value (range, choices, read only), that is logged and the script goes on, as OpenSpace's do; a bad pattern or an

@@ -46,8 +46,11 @@ const Schema& RenderableGlobe::schema() {
       {"AmbientIntensity", Type::Number, "share of the light that reaches the night side", false, 0.0, 1.0},
       {"WaterReflectance", Type::Number, "scales the Sun's glint on water; 1: as of a sea in a breeze", false, 0.0,
        10.0},
+      {"LightSourceNode", Type::String, "the node whose light falls on it; left out: the Sun"},
       {"RenderAtDistance", Type::Boolean, "whether it is drawn when smaller than a pixel"},
       {"TargetLodScaleFactor", Type::Number, "15: one texel a pixel", false, 1.0, 50.0},
+      {"OrenNayarRoughness", Type::Number, "without effect", false, 0.0, 1.0},
+      {"DimInAtmosphere", Type::Boolean, "without effect"},
       {"Tag", Type::StringOrStrings, "names by which scripts can address it"},
       {"Layers", Type::Table, "layer groups, each a list of layers"},
   });
@@ -87,44 +90,63 @@ RenderableGlobe::~RenderableGlobe() {
 }
 
 void RenderableGlobe::addProperties() {
-  for (Property* property :
-       std::initializer_list<Property*>{&performShading, &useAccurateNormals, &renderAtDistance, &ambientIntensity,
-                                        &waterReflectance, &targetLodScaleFactor}) {
+  for (Property* property : std::initializer_list<Property*>{
+           &performShading, &useAccurateNormals, &renderAtDistance, &ambientIntensity, &lightSource, &waterReflectance,
+           &targetLodScaleFactor, &currentLodScaleFactor, &activeLayers}) {
     addProperty(*property);
   }
   for (Property* property :
-       std::initializer_list<Property*>{&showChunkEdges, &performFrustumCulling, &performHorizonCulling, &evaluator}) {
+       std::initializer_list<Property*>{&showChunkEdges, &performFrustumCulling, &performHorizonCulling, &evaluator,
+                                        &levelByProjectedArea, &resetTileProviders}) {
     debugOwner.addProperty(*property);
   }
   addChild(debugOwner);
+  foreign_.addTo(*this, debugOwner);
   addChild(layers_);
+  connectProperties();
+}
+
+void RenderableGlobe::connectProperties() {
+  targetLodScaleFactor.onChange([this] { currentLodScaleFactor.put(targetLodScaleFactor.get()); });
+  levelByProjectedArea.onChange([this] {
+    const bool byDistance = evaluator.get() == static_cast<int>(Evaluator::Distance);
+    if (byDistance == levelByProjectedArea.get()) {
+      evaluator.put(static_cast<int>(byDistance ? Evaluator::ScreenSpaceError : Evaluator::Distance));
+    }
+  });
+  evaluator.onChange([this] { levelByProjectedArea.put(evaluator.get() != static_cast<int>(Evaluator::Distance)); });
+  resetTileProviders.onChange([this] {
+    for (const LayerGroupId id : allLayerGroups) {
+      for (const auto& layer : layers_.group(id).layers()) {
+        layer->reset.fire();
+      }
+    }
+  });
 }
 
 Result<void> RenderableGlobe::load(const RenderableRequest& request) {
-  for (Property* property : properties()) {
-    const Value* value = request.table.find(property->identifier());
-    if (value == nullptr || value->isNil()) {
+  for (const Schema::Field& field : schema().fields()) {
+    Property* property = this->property(field.key);
+    const Value* value = request.table.find(field.key);
+    if (property == nullptr || value == nullptr || value->isNil()) {
       continue;
     }
     if (Result<void> set = property->set(*value); !set) {
-      return failure(set.error().what, request.where + ": Renderable." + property->identifier(), set.error().remedy);
+      return failure(set.error().what, request.where + ": Renderable." + field.key, set.error().remedy);
     }
   }
   static constexpr std::string_view laterOrNever[] = {"Type",
                                                       "Atmosphere",
                                                       "CameraMinHeight",
                                                       "Debug",
-                                                      "DimInAtmosphere",
                                                       "Labels",
                                                       "LightSource",
-                                                      "LightSourceNode",
                                                       "RenderBinMode",
                                                       "Rings",
                                                       "ShadowGroup",
                                                       "SegmentsPerPatch",
                                                       "Shadows",
                                                       "InteractionDepthBelowEllipsoid",
-                                                      "OrenNayarRoughness",
                                                       "ModelSpaceRenderingCutoffLevel"};
   for (const UnknownKey& unknown : unknownKeys(request.table, {&schema()}, laterOrNever)) {
     notes_.push_back(noteOf(unknown, request.where + ": Renderable"));
@@ -249,7 +271,7 @@ SurfaceSettings RenderableGlobe::settings() const {
   settings.accurateNormals = useAccurateNormals.get();
   settings.showEdges = showChunkEdges.get();
   settings.ambient = ambientIntensity.get();
-  settings.opacity = opacity.get();
+  settings.opacity = effectiveOpacity();
   settings.waterReflectance = waterReflectance.get();
   settings.compositionMilliseconds = services_.compositionBudget.get();
   return settings;
@@ -257,8 +279,14 @@ SurfaceSettings RenderableGlobe::settings() const {
 
 void RenderableGlobe::update(const FrameContext& frame) {
   services_.enterFrame(frame.number);
+  std::size_t active = 0;
+  for (const LayerGroupId id : allLayerGroups) {
+    active += layers_.group(id).enabledLayers().size();
+  }
+  activeLayers.put(static_cast<int>(active));
   const double radius = apparentRadius(frame);
-  drawn_ = graphics_ != nullptr && enabled.get() && opacity.get() > 0.0 && (renderAtDistance.get() || radius >= 0.5);
+  drawn_ =
+      graphics_ != nullptr && enabled.get() && effectiveOpacity() > 0.0 && (renderAtDistance.get() || radius >= 0.5);
   inView_ = drawn_ && isInView(frame);
   if (drawn_) {
     framesUnseen_ = 0;

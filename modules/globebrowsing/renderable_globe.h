@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "globebrowsing/foreign_properties.h"
 #include "globebrowsing/globe_services.h"
 #include "globebrowsing/gpu/globe_tiles.h"
 #include "globebrowsing/layers/layer_manager.h"
@@ -46,6 +47,7 @@ class RenderableGlobe final : public Renderable, public Ground {
   void draw(const FrameContext& frame, std::size_t view) override;
   [[nodiscard]] double boundingSphere() const override { return tiling_->ellipsoid().maximumRadius(); }
   [[nodiscard]] Ground* ground() override { return this; }
+  [[nodiscard]] std::string_view lightSourceNode() const override { return lightSource.get(); }
   void addAttributions(std::vector<std::string_view>& list) const override;
   [[nodiscard]] Contents contents() const override;
 
@@ -76,16 +78,25 @@ class RenderableGlobe final : public Renderable, public Ground {
       15.0,
       {1.0, 50.0}};
 
+  FloatProperty currentLodScaleFactor{
+      {"CurrentLodScaleFactor", "Current level of detail", "Always the same as TargetLodScaleFactor", true}, 15.0};
+  StringProperty lightSource{{"LightSourceNode", "Light source", "The node whose light falls on it; empty: the Sun"}};
+  IntProperty activeLayers{{"NActiveLayers", "Active layers", "How many layers are enabled", true}, 0};
+
   PropertyOwner debugOwner{"Debug", "Debug", "For looking into how the globe is drawn"};
   BoolProperty showChunkEdges{{"ShowChunkEdges", "Chunk edges", "Draws the outlines of chunks"}, false};
   BoolProperty performFrustumCulling{{"PerformFrustumCulling", "Frustum culling"}, true};
   BoolProperty performHorizonCulling{{"PerformHorizonCulling", "Horizon culling"}, true};
   OptionProperty evaluator{{"Evaluator", "Evaluator", "What decides how fine a chunk must be"},
                            {"ScreenSpaceError", "Distance", "ProjectedArea", "AvailableData"}};
+  BoolProperty levelByProjectedArea{
+      {"LevelByProjectedAreaElseDistance", "Level by projected area", "False is the evaluator Distance"}, true};
+  TriggerProperty resetTileProviders{{"ResetTileProviders", "Reset tile providers", "Resets every layer"}};
 
  private:
   RenderableGlobe(std::shared_ptr<const Tiling> tiling, GlobeServices& services);
   void addProperties();
+  void connectProperties();
   Result<void> load(const RenderableRequest& request);
   /// The place of the next layer of a group, from 1, if those that were refused count.
   [[nodiscard]] std::size_t numberOfNext(LayerGroupId group) const;
@@ -101,6 +112,7 @@ class RenderableGlobe final : public Renderable, public Ground {
 
   std::shared_ptr<const Tiling> tiling_;
   GlobeServices& services_;
+  ForeignProperties foreign_;
   LayerManager layers_;
   std::vector<RefusedLayer> refusedLayers_;
   std::set<std::string> refused_;  ///< identifiers of layers that addLayer left out

@@ -148,19 +148,20 @@ TEST_F(LayerTablesTest, WhatIsRefusedIsNamedByGroupLayerAndKey) {
 /// Section b of openspace-formats.md: what RenderableGlobe's table may hold, and what it held once.
 TEST_F(LayerTablesTest, EveryDocumentedKeyOfAGlobeIsUsedOrIgnored) {
   Fields table{{"Type", "RenderableGlobe"}, {"Radii", 1e6}, {"Tag", "planet"}};
-  for (const char* key : {"PerformShading", "UseAccurateNormals", "RenderAtDistance", "Enabled"}) {
+  for (const char* key : {"PerformShading", "UseAccurateNormals", "RenderAtDistance", "Enabled", "DimInAtmosphere"}) {
     table[key] = true;
   }
-  for (const char* key : {"AmbientIntensity", "Opacity"}) {
+  for (const char* key : {"AmbientIntensity", "Opacity", "OrenNayarRoughness"}) {
     table[key] = 0.5;
   }
   table["TargetLodScaleFactor"] = 15.0;
+  table["LightSourceNode"] = "Sun";
   for (const char* group : {"HeightLayers", "ColorLayers", "Overlays", "NightLayers", "WaterMasks"}) {
     table["Layers"] = tableOf({{group, listOf({})}});
   }
-  for (const char* key : {"LightSourceNode", "ModelSpaceRenderingCutoffLevel", "OrenNayarRoughness", "Labels",
-                          "ShadowGroup", "Rings", "Shadows", "RenderBinMode", "DimInAtmosphere", "SegmentsPerPatch",
-                          "CameraMinHeight", "InteractionDepthBelowEllipsoid", "Atmosphere", "LightSource"}) {
+  for (const char* key :
+       {"ModelSpaceRenderingCutoffLevel", "Labels", "ShadowGroup", "Rings", "Shadows", "RenderBinMode",
+        "SegmentsPerPatch", "CameraMinHeight", "InteractionDepthBelowEllipsoid", "Atmosphere", "LightSource"}) {
     table[key] = tableOf({});
   }
   const auto notesOf = [&] {

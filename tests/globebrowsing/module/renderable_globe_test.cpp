@@ -1,3 +1,4 @@
+#include <cstdlib>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -46,6 +47,79 @@ TEST_F(RenderableGlobeTest, TakesItsPropertiesFromTheTable) {
   EXPECT_FALSE(globe.enabled.get());
   EXPECT_EQ(globe.ambientIntensity.get(), 0.5);
   EXPECT_EQ(globe.radii(), glm::dvec3(radius));
+}
+
+TEST_F(RenderableGlobeTest, FadeMultipliesItsOpacity) {
+  RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({solidLayer("White", {1, 1, 1})})}});
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(centre()[0], 255);
+  // Another program may have to be built first.
+  const auto becomes = [this](int grey) { return framesUntil([&] { return std::abs(centre()[0] - grey) <= 1; }); };
+  ASSERT_TRUE(globe.property("Fade")->set(0.5));
+  EXPECT_TRUE(becomes(128));
+  globe.opacity.put(0.5);
+  EXPECT_TRUE(becomes(64));
+  globe.fade.put(0.0);
+  EXPECT_TRUE(becomes(0));
+  globe.fade.put(1.0);
+  EXPECT_TRUE(becomes(128));
+}
+
+TEST_F(RenderableGlobeTest, HasThePropertiesOfOpenSpacesGlobes) {
+  RenderableGlobe& globe =
+      addGlobe({{"ColorLayers", listOf({solidLayer("A", {1, 0, 0}), solidLayer("B", {0, 1, 0}, {{"Enabled", false}})})},
+                {"Overlays", listOf({solidLayer("C", {0, 0, 1})})}},
+               {{"Type", "RenderableGlobe"}, {"LightSourceNode", "Lamp"}, {"OrenNayarRoughness", 0.25}});
+  EXPECT_EQ(globe.property("Type")->value(), Value("RenderableGlobe"));
+  EXPECT_EQ(globe.lightSourceNode(), "Lamp");
+  EXPECT_EQ(globe.property("OrenNayarRoughness")->value(), Value(0.25));
+  frame();
+  EXPECT_EQ(globe.property("NActiveLayers")->value(), Value(2));
+  ASSERT_TRUE(globe.propertyAt("Layers.ColorLayers.B.Enabled")->set(true));
+  frame();
+  EXPECT_EQ(globe.property("NActiveLayers")->value(), Value(3));
+  ASSERT_TRUE(globe.property("TargetLodScaleFactor")->set(20.0));
+  EXPECT_EQ(globe.property("CurrentLodScaleFactor")->value(), Value(20.0));
+  for (const char* readOnly : {"Type", "NActiveLayers", "CurrentLodScaleFactor"}) {
+    EXPECT_TRUE(globe.property(readOnly)->isReadOnly()) << readOnly;
+  }
+  const std::pair<const char*, Value> others[] = {{"DimInAtmosphere", true},
+                                                  {"Eclipse", true},
+                                                  {"EclipseHardShadows", true},
+                                                  {"ShadowMapping.ShadowMapping", true},
+                                                  {"ShadowMapping.ZFightingPercentage", 0.5},
+                                                  {"ShadowMapping.NumberShadowSamples", 3},
+                                                  {"Debug.ModelSpaceRenderingCutoffLevel", 12},
+                                                  {"Debug.DynamicLodIterationCount", 32}};
+  for (const auto& [uri, value] : others) {
+    Property* property = globe.propertyAt(uri);
+    ASSERT_NE(property, nullptr) << uri;
+    EXPECT_TRUE(property->set(value)) << uri;
+  }
+}
+
+TEST_F(RenderableGlobeTest, DebugPropertiesOfOpenSpaceWork) {
+  RenderableGlobe& globe =
+      addGlobe({{"ColorLayers", listOf({solidLayer("A", {1, 0, 0}), solidLayer("B", {0, 1, 0}, {{"Enabled", false}})})},
+                {"Overlays", listOf({solidLayer("C", {0, 0, 1})})}});
+  Property& byArea = *globe.propertyAt("Debug.LevelByProjectedAreaElseDistance");
+  ASSERT_TRUE(byArea.set(false));
+  EXPECT_EQ(globe.evaluator.word(), "Distance");
+  ASSERT_TRUE(byArea.set(true));
+  EXPECT_EQ(globe.evaluator.word(), "ScreenSpaceError");
+  ASSERT_TRUE(globe.evaluator.set("Distance"));
+  EXPECT_EQ(byArea.value(), Value(false));
+  ASSERT_TRUE(globe.evaluator.set("ProjectedArea"));
+  EXPECT_EQ(byArea.value(), Value(true));
+  EXPECT_EQ(globe.evaluator.word(), "ProjectedArea");
+  int resets = 0;
+  for (const LayerGroupId id : allLayerGroups) {
+    for (const auto& layer : globe.layers().group(id).layers()) {
+      layer->reset.onChange([&resets] { ++resets; });
+    }
+  }
+  ASSERT_TRUE(globe.propertyAt("Debug.ResetTileProviders")->set({}));
+  EXPECT_EQ(resets, 3);
 }
 
 /// Every float in every uniform buffer that is bound.

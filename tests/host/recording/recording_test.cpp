@@ -340,6 +340,30 @@ TEST_F(RecordingScripts, WhatIsRecordedIsPlayed) {
   EXPECT_FALSE(is("isPlayingBack"));
 }
 
+TEST_F(RecordingScripts, ConvertsOldVersionsBesideThem) {
+  std::filesystem::create_directories(folder_ / "old");
+  std::ofstream(folder_ / "old/flight.osrectxt") << "OpenSpace_record/playback01.00A\n"
+                                                    "camera 7 0 1000 1 2 3 0 0 0.6 0.8 0.5 F A\n"
+                                                    "time 8 1 1001 60 R -\n"
+                                                    "script 9 2 1002  1 x()\n";
+  EXPECT_EQ(run("fileFormatConversion('old/flight.osrectxt')"), "");
+  const auto read = readSessionRecording(folder_ / "old/flight_01.00-03.00.osrectxt");
+  ASSERT_TRUE(read) << read.error().message();
+  EXPECT_EQ(read->version, "03.00");
+  ASSERT_EQ(read->entries.size(), 3U);
+  const auto& camera = std::get<CameraEntry>(read->entries[0]);
+  EXPECT_EQ(camera.rotation, glm::dquat(0.8, 0, 0, 0.6));
+  EXPECT_EQ(camera.node, "A");
+  EXPECT_TRUE(camera.followsRotation);
+  EXPECT_THAT(std::get<ScriptEntry>(read->entries[1]).text, HasSubstr("setDeltaTime(60)"));
+  EXPECT_EQ(std::get<ScriptEntry>(read->entries[2]).text, "x()");
+  // A second time that is a file of the present version: nothing to do.
+  EXPECT_EQ(run("fileFormatConversion('old/flight_01.00-03.00.osrectxt')"), "");
+  const std::filesystem::directory_iterator files(folder_ / "old");
+  EXPECT_EQ(std::distance(begin(files), end(files)), 2);
+  EXPECT_THAT(run("fileFormatConversion('none')"), HasSubstr("none"));
+}
+
 TEST_F(RecordingScripts, PlaybackPausesWithTheTimeAndStops) {
   EXPECT_EQ(run("startRecording('a')"), "");
   recordTwoSeconds();

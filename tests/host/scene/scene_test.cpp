@@ -42,6 +42,8 @@ class Ball final : public Renderable {
  public:
   Ball() : Renderable("Ball") {}
   [[nodiscard]] double boundingSphere() const override { return 42.0; }
+  [[nodiscard]] std::string_view lightSourceNode() const override { return light; }
+  std::string light;
 };
 
 }  // namespace
@@ -123,6 +125,24 @@ TEST(Scene, WithoutASunLightComesFromTheOrigin) {
   SceneNode& node = add(scene, table({{"Identifier", "N"}, {"Transform", translation({0, 0, -5})}}));
   EXPECT_EQ(scene.lightDirection(node), glm::dvec3(0, 0, 1));
   EXPECT_EQ(scene.lightDirection(scene.root()), glm::dvec3(1, 0, 0));
+}
+
+TEST(Scene, ARenderableNamesTheNodeThatLightsIt) {
+  Scene scene;
+  scene.registerRenderable("Ball", [](const RenderableRequest&) { return std::make_unique<Ball>(); });
+  SceneNode& node = add(
+      scene,
+      table({{"Identifier", "N"}, {"Renderable", table({{"Type", "Ball"}})}, {"Transform", translation({0, 0, -5})}}));
+  add(scene, table({{"Identifier", "Sun"}, {"Transform", translation({0, 0, 5})}}));
+  add(scene, table({{"Identifier", "Lamp"}, {"Transform", translation({0, -7, -5})}}));
+  std::string& light = dynamic_cast<Ball&>(*node.renderable()).light;
+  EXPECT_EQ(scene.lightDirection(node), glm::dvec3(0, 0, 1));
+  light = "Lamp";
+  EXPECT_EQ(scene.lightDirection(node), glm::dvec3(0, -1, 0));
+  for (const char* useless : {"Gone", "N"}) {
+    light = useless;
+    EXPECT_EQ(scene.lightDirection(node), glm::dvec3(0, 0, 1)) << useless;
+  }
 }
 
 TEST(Scene, ABodyWithoutAnEphemerisStaysAtItsParent) {

@@ -113,7 +113,11 @@ TEST(ForeignScripts, DoNothingAndGiveNothing) {
       "openspace.addScreenSpaceRenderable({ Type = 'X' }) openspace.dashboard.addDashboardItem({})\n"
       "for _ in pairs(openspace.exoplanets.systemList()) do error('not empty') end\n"
       "assert(openspace.audio.isPlaying('x') == false)\n"
-      "openspace.spice.unloadKernel(openspace.spice.loadKernel('k.tls'))",
+      "openspace.spice.unloadKernel(openspace.spice.loadKernel('k.tls'))\n"
+      "assert(select('#', openspace.spice.position('EARTH', 'SUN', 'GALACTIC', '', '2026 NOV 22')) == 0)\n"
+      "openspace.spice.rotationMatrix('EARTH', 'GALACTIC', '2026 NOV 22') openspace.spice.convertTLEtoSPK('a', 'b')\n"
+      "openspace.keyframeRecording.newSequence() openspace.keyframeRecording.addCameraKeyframe(1)\n"
+      "assert(#openspace.keyframeRecording.keyframes() == 0)",
       "test.lua");
   EXPECT_TRUE(run) << run.error().message();
   EXPECT_FALSE(engine.run("openspace.audio.nonsense()", "test.lua"));

@@ -79,6 +79,18 @@ TEST_F(PropertyScriptsTest, ReadsAndLists) {
       "assert(#openspace.property('Layer.*') == 6 and openspace.property('*.Fade')[1] == 'Layer.Fade')");
 }
 
+TEST_F(PropertyScriptsTest, ListsOwners) {
+  PropertyOwner settings("Settings");
+  layer_.addChild(settings);
+  run("openspace.addTag('Layer', 'map') "
+      "local function owners(pattern) return table.concat(openspace.propertyOwner(pattern), ' ') end "
+      "assert(owners('Layer') == 'Layer' and owners('Layer.Settings') == 'Layer.Settings') "
+      "assert(owners('Layer*') == 'Layer Layer.Settings' and owners('*.Settings') == 'Layer.Settings') "
+      "assert(owners('{map}.Settings') == 'Layer.Settings' and owners('{no}.Settings') == '') "
+      "assert(owners('Layer.Opacity') == '')");
+  EXPECT_FALSE(engine_.run("openspace.propertyOwner('a*b*')", "test"));
+}
+
 TEST_F(PropertyScriptsTest, MovesOverTimeAndRunsThePostScript) {
   run("openspace.setPropertyValueSingle('Layer.Opacity', 0, 2, 'QuadraticEaseIn', 'finished = true')");
   animation_.advance(1.0);
