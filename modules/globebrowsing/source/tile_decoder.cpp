@@ -30,7 +30,7 @@ bool startsWith(std::span<const std::uint8_t> bytes, std::string_view begin, std
 template <class Tile>
 TileResult<Tile> withoutImage(std::span<const std::uint8_t> bytes, const TileService& service) {
   if (bytes.empty()) {
-    return failure("the tile is empty", service.where);
+    return Tile{};  // some servers say 200 and nothing where others say 204 or 404
   }
   if (const auto said = exceptionText(bytes)) {
     if (service.isExceptionEmpty) {
