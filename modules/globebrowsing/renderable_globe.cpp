@@ -246,7 +246,11 @@ void RenderableGlobe::updateSurfaces(const FrameContext& frame, TexturePoolShare
   if (replacement_) {
     replacement_->update(frame, settings());
     // A server that is down must not keep this globe from its share, nor from giving it up.
-    if (replacement_->settled(0).complete || replacement_->filled()) {
+    bool isSettled = true;
+    for (std::size_t view = 0; view < frame.views.size(); ++view) {
+      isSettled = isSettled && replacement_->settled(view).complete;
+    }
+    if (isSettled || replacement_->filled()) {
       surface_ = std::move(replacement_);
       surface_->setShown();
       pool_ = replacementPool_;

@@ -46,6 +46,8 @@ constexpr double coarsest = 1e60;
 constexpr double rootPriority = 3.0;
 constexpr double neededPriority = 1.0;
 
+constexpr std::uint32_t allViews = ~std::uint32_t{0};
+
 double orElse(double value, double least, double otherwise) {
   return std::isfinite(value) && value >= least ? value : otherwise;
 }
@@ -100,8 +102,8 @@ class ChunkTree::Implementation {
   void noteCulled(const ChunkNode& node, const Demand& demand);
   void split(NodeNumber number);
   void draw(NodeNumber number, const Demand& demand);
-  void want(const ChunkNode& node, double priority);
-  void renewShape(const ChunkNode& node, double priority);
+  void want(const ChunkNode& node, double priority, std::uint32_t views);
+  void renewShape(const ChunkNode& node, double priority, std::uint32_t views);
   [[nodiscard]] TileResidency::State stateOf(const ChunkNode& node) const {
     return residency_->state(node.index, node.colourLevel);
   }
@@ -127,7 +129,6 @@ class ChunkTree::Implementation {
   std::vector<NodeNumber> numbers_;  ///< of the nodes of selected_
   SkirtFitter skirts_;
   SelectionFigures figures_;
-  bool provisional_ = false;  ///< finer or coarser chunks than wanted are drawn
   double coarsening_ = 1.0;
   bool cutShort_ = false;  ///< tiles that should have split did not, for too many had been visited
 };
@@ -154,7 +155,7 @@ void ChunkTree::Implementation::select(std::span<const SelectionView> views, con
   }
   views_.prepare(views, settings_, tiling_.ellipsoid().radii());
   for (const NodeNumber root : roots_) {
-    residency.want(pool_[root].index, 0, rootPriority);
+    residency.want(pool_[root].index, 0, rootPriority, allViews);
     keep(pool_[root]);
   }
   selectFromRoots();
@@ -167,16 +168,17 @@ void ChunkTree::Implementation::select(std::span<const SelectionView> views, con
 void ChunkTree::Implementation::selectFromRoots() {
   figures_ = {};
   figures_.coarsening = coarsening_;
-  provisional_ = false;
   cutShort_ = false;
   truncate(0);
-  bool covered = true;
   if (!views_.empty()) {
     for (const NodeNumber root : roots_) {
-      covered = visit(root) && covered;
+      visit(root);
     }
   }
-  figures_.atTarget = covered && figures_.missing == 0 && !provisional_ && !cutShort_ && !hasRoomForFiner();
+  if (cutShort_ || hasRoomForFiner()) {
+    figures_.viewsShortOfTarget = allViews;
+  }
+  figures_.atTarget = figures_.viewsShortOfTarget == 0;
 }
 
 bool ChunkTree::Implementation::hasRoomForFiner() const {
@@ -221,31 +223,31 @@ double ChunkTree::Implementation::priority(const Demand& demand, double base) co
   return base + (worth < beyondCompare ? worth / (1.0 + worth) : 1.0);
 }
 
-void ChunkTree::Implementation::want(const ChunkNode& node, double priority) {
+void ChunkTree::Implementation::want(const ChunkNode& node, double priority, std::uint32_t views) {
   // Roots were asked for before everything else.
   if (node.index.level > 0) {
-    residency_->want(node.index, node.colourLevel, priority);
+    residency_->want(node.index, node.colourLevel, priority, views);
   }
 }
 
-void ChunkTree::Implementation::renewShape(const ChunkNode& node, double priority) {
+void ChunkTree::Implementation::renewShape(const ChunkNode& node, double priority, std::uint32_t views) {
   if (node.index.level > 0) {
-    residency_->renewShape(node.index, priority);
+    residency_->renewShape(node.index, priority, views);
   }
 }
 
 void ChunkTree::Implementation::noteCulled(const ChunkNode& node, const Demand& demand) {
-  if (!demand.beside) {
+  if (demand.beside == 0) {
     ++figures_.culledHorizon;
-    renewShape(node, 0.0);
+    renewShape(node, 0.0, allViews);
     return;
   }
   ++figures_.culledFrustum;
   // Beside what is drawn: without it, turning the camera would fall back to a coarser chunk.
   if (settings_.prefetch) {
-    want(node, priority(demand, 0.0));
+    want(node, priority(demand, 0.0), demand.beside);
   } else {
-    renewShape(node, 0.0);
+    renewShape(node, 0.0, demand.beside);
   }
   keep(node);
 }
@@ -271,18 +273,18 @@ bool ChunkTree::Implementation::visit(NodeNumber number) {
 
 bool ChunkTree::Implementation::visitTarget(NodeNumber number, const Demand& demand) {
   ChunkNode& node = pool_[number];
-  want(node, priority(demand, neededPriority));
+  want(node, priority(demand, neededPriority), demand.views);
   const TileResidency::State state = stateOf(node);
   if (state == TileResidency::State::Complete) {
     draw(number, demand);
     return true;
   }
   ++figures_.missing;
+  figures_.viewsShortOfTarget |= demand.views;
   // Zooming out: what was drawn stays until this one is complete. Without a surface of its own, any finer one will do.
   const bool cannotDraw = state == TileResidency::State::Nothing;
   const bool drewFiner = node.belowFrame + 1 == frame_;
   if ((drewFiner && coverByFiner(number, true)) || (cannotDraw && coverByFiner(number, false))) {
-    provisional_ = true;
     return true;
   }
   if (cannotDraw) {
@@ -304,20 +306,20 @@ bool ChunkTree::Implementation::visitChildren(NodeNumber number, const Demand& d
   }
   const ChunkNode& node = pool_[number];
   keep(node);
-  renewShape(node, priority(demand, 0.0));
+  renewShape(node, priority(demand, 0.0), demand.views | demand.beside);
   if (covered) {
     return true;
   }
   if (stateOf(node) == TileResidency::State::Nothing) {
     if (node.index.level % stopgapLevels == 0) {
-      want(node, priority(demand, neededPriority));
+      want(node, priority(demand, neededPriority), demand.views);
     }
     return false;
   }
   truncate(before);
   draw(number, demand);
-  figures_.kicked = kickedBefore + 1;  // whatever stood in for something below is not drawn either
-  provisional_ = true;
+  figures_.kicked = kickedBefore + 1;           // whatever stood in for something below is not drawn either
+  figures_.viewsShortOfTarget |= demand.views;  // it is also seen where only its other children are
   return true;
 }
 

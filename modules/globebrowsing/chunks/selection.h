@@ -58,6 +58,8 @@ struct SelectionFigures {
   bool atTarget = false;      ///< every chunk drawn is complete and what settings ask for with a coarsening that stays
   double coarsening = 1.0;    ///< errors allowed are that many times those of the settings: more than 1 at mostVisited
   std::uint32_t missing = 0;  ///< target chunks that are not complete
+  /// Bit i: something that view i sees is not at its target; no bit is set exactly where atTarget.
+  std::uint32_t viewsShortOfTarget = 0;
 };
 
 }  // namespace meridian::globebrowsing

@@ -115,7 +115,7 @@ Demand PreparedViews::demandOn(const ChunkBounds& bounds, const HorizonCap& cap)
     if (view.frustum.touches(box)) {
       demand.views |= view.bit;
     } else {
-      demand.beside = true;
+      demand.beside |= view.bit;
     }
     // A tile that a view turns its back on still counts by its distance, so that views in all directions agree.
     TileMeasure measure;

@@ -22,8 +22,8 @@ struct ErrorScale {
 
 /// What all views together ask of a tile.
 struct Demand {
-  std::uint32_t views = 0;  ///< that see it
-  bool beside = false;      ///< some view would see it, looking elsewhere
+  std::uint32_t views = 0;   ///< that see it
+  std::uint32_t beside = 0;  ///< that would see it, looking elsewhere
   double distance = 0.0;
   double urgency = 0.0;
   double pixelsPerMetre = 0.0;  ///< at the tile's nearest point

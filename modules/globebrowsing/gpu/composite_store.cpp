@@ -340,9 +340,11 @@ std::optional<CompositeStore::Placement> CompositeStore::placeAt(const Composite
   return mixedPlacement(key, {*slot, transform});
 }
 
-std::string CompositeStore::waitingFor() const {
+std::string CompositeStore::waitingFor(bool areTilesStale) const {
+  bool isMixed = false;
   for (const CompositeKind kind : allCompositeKinds) {
     const CompositeGenerations& generations = this->generations(kind);
+    isMixed = isMixed || generations.pair().isMixed;
     if (generations.isOutdated(kind, layers_)) {
       return "layers have changed";
     }
@@ -367,7 +369,8 @@ std::string CompositeStore::waitingFor() const {
     }
   }
   const std::size_t waiting = missing_ - unplaced_;
-  return waiting > 0 ? fmt::format("{} composites are waiting", waiting) : std::string();
+  // Of a mixed pair the second composites are missing without having been wanted.
+  return waiting > 0 && (areTilesStale || isMixed) ? fmt::format("{} composites are waiting", waiting) : std::string();
 }
 
 }  // namespace meridian::globebrowsing

@@ -99,8 +99,9 @@ class CompositeStore {
   /// How many composites were composed, ever.
   [[nodiscard]] std::uint64_t composedCount() const { return composedCount_; }
   [[nodiscard]] const Composer& composer() const { return *composer_; }
-  /// Why what is asked for is not complete, or an empty string.
-  [[nodiscard]] std::string waitingFor() const;
+  /// Why what is asked for is not complete, or an empty string. `areTilesStale`: whether some of the tiles that this is
+  /// asked about were wanted in this frame and not current.
+  [[nodiscard]] std::string waitingFor(bool areTilesStale) const;
   /// Whether the last compose() had more composites to hold than the pool can: what is missing then stays missing.
   [[nodiscard]] bool full() const { return unplaced_ > 0; }
   /// Bytes of the composites and raw tiles that are there.

@@ -55,6 +55,7 @@ GlobeTiles::GlobeTiles(std::shared_ptr<const Tiling> tiling, LayerManager& layer
 
 void GlobeTiles::beginFrame(std::uint64_t frame) {
   stale_ = 0;
+  staleViews_ = 0;
   absent_ = 0;
   surfaces_.beginFrame(frame);
   composites_.beginFrame(frame);
@@ -66,16 +67,20 @@ void GlobeTiles::process(graphics::UploadBudget& uploads, double compositionMill
   composites_.endFrame();
 }
 
-void GlobeTiles::want(const TileIndex& index, int colourLevel, double priority) {
+void GlobeTiles::want(const TileIndex& index, int colourLevel, double priority, std::uint32_t views) {
   const bool shaped = surfaces_.want(index, priority);
   const CompositeStore::State coloured = composites_.want(index, colourLevel, priority);
-  stale_ += shaped && coloured.current ? 0 : 1;
+  if (!shaped || !coloured.current) {
+    ++stale_;
+    staleViews_ |= views;
+  }
   absent_ += surfaces_.find(index) != nullptr && coloured.present ? 0 : 1;
 }
 
-void GlobeTiles::renewShape(const TileIndex& index, double priority) {
-  if (surfaces_.isOutdated(index)) {
-    stale_ += surfaces_.want(index, priority) ? 0 : 1;
+void GlobeTiles::renewShape(const TileIndex& index, double priority, std::uint32_t views) {
+  if (surfaces_.isOutdated(index) && !surfaces_.want(index, priority)) {
+    ++stale_;
+    staleViews_ |= views;
   }
 }
 
@@ -140,13 +145,14 @@ SurfaceErrors GlobeTiles::surfaceErrors(const TileIndex& index) const {
   return errors;
 }
 
-std::string GlobeTiles::waitingFor() const {
-  for (std::string reason : {surfaces_.waitingFor(), composites_.waitingFor()}) {
+std::string GlobeTiles::waitingFor(std::uint32_t views) const {
+  const bool areStale = (staleViews_ & views) != 0;
+  for (std::string reason : {surfaces_.waitingFor(), composites_.waitingFor(areStale)}) {
     if (!reason.empty()) {
       return reason;
     }
   }
-  return stale_ > 0 && !full() ? fmt::format("{} tiles are loading", stale_) : std::string();
+  return areStale && !full() ? fmt::format("{} tiles are loading", stale_) : std::string();
 }
 
 }  // namespace meridian::globebrowsing

@@ -28,8 +28,8 @@ class GlobeTiles final : public TileResidency {
   /// Uploads and composes under the frame's budgets. After selection.
   void process(graphics::UploadBudget& uploads, double compositionMilliseconds);
 
-  void want(const TileIndex& index, int colourLevel, double priority) override;
-  void renewShape(const TileIndex& index, double priority) override;
+  void want(const TileIndex& index, int colourLevel, double priority, std::uint32_t views) override;
+  void renewShape(const TileIndex& index, double priority, std::uint32_t views) override;
   void keep(const TileIndex& index, int colourLevel) override;
   [[nodiscard]] State state(const TileIndex& index, int colourLevel) const override;
   [[nodiscard]] HeightRange heightRange(const TileIndex& index) const override;
@@ -46,8 +46,8 @@ class GlobeTiles final : public TileResidency {
   [[nodiscard]] bool full() const { return surfaces_.full() || composites_.full(); }
   /// Whether shapes and colours of all tiles that were wanted in this frame are there, if only without what is late.
   [[nodiscard]] bool filled() const { return absent_ == 0; }
-  /// What the tiles that were wanted in this frame still lack, or an empty string.
-  [[nodiscard]] std::string waitingFor() const;
+  /// What the tiles that were wanted in this frame for one of these views (a bit each) still lack, or an empty string.
+  [[nodiscard]] std::string waitingFor(std::uint32_t views) const;
 
  private:
   GlobeTiles(std::shared_ptr<const Tiling> tiling, LayerManager& layers, TileStreamer& streamer,
@@ -56,8 +56,9 @@ class GlobeTiles final : public TileResidency {
   std::shared_ptr<const Tiling> tiling_;
   SurfaceStore surfaces_;
   CompositeStore composites_;
-  std::size_t stale_ = 0;   ///< tiles wanted in this frame that are not current
-  std::size_t absent_ = 0;  ///< and those of which shape or colours are not there at all
+  std::size_t stale_ = 0;         ///< tiles wanted in this frame that are not current
+  std::uint32_t staleViews_ = 0;  ///< for which they were wanted
+  std::size_t absent_ = 0;        ///< and those of which shape or colours are not there at all
 };
 
 }  // namespace meridian::globebrowsing

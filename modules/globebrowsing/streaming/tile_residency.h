@@ -38,11 +38,11 @@ class TileResidency {
   // because relief needs it draws the composite of the tile at which colours were fine enough.
 
   /// Asks for all that the tile needs, this frame; a greater priority is served first. What is not asked for again in
-  /// the next frame is cancelled or becomes evictable.
-  virtual void want(const TileIndex& index, int colourLevel, double priority) = 0;
+  /// the next frame is cancelled or becomes evictable. `views`: bit i where view i is not complete without it.
+  virtual void want(const TileIndex& index, int colourLevel, double priority, std::uint32_t views) = 0;
   /// Asks for the tile's shape alone, this frame, if it has one that shows other heights than it should by now. For
   /// tiles that are not drawn: by its heights such a tile would be culled, or split, for ever.
-  virtual void renewShape(const TileIndex& index, double priority) = 0;
+  virtual void renewShape(const TileIndex& index, double priority, std::uint32_t views) = 0;
   /// Keeps what the tile has from being evicted this frame, without asking for more.
   virtual void keep(const TileIndex& index, int colourLevel) = 0;
   [[nodiscard]] virtual State state(const TileIndex& index, int colourLevel) const = 0;

@@ -17,6 +17,11 @@ constexpr std::string_view tooSmallPool = "the texture pool is too small for thi
 constexpr std::string_view tooManyChunks =
     "a globe asks for more chunks than can be drawn, so coarser ones are; look for heights that are out of proportion, "
     "or lower TargetLodScaleFactor";
+constexpr std::uint32_t allViews = ~std::uint32_t{0};
+/// Selection serves the first 32; what others see is not known.
+constexpr std::uint32_t bitOf(std::size_t view) {
+  return view < 32 ? std::uint32_t{1} << view : allViews;
+}
 /// A globe coming nearer soon gets a larger pool.
 constexpr int framesUntilTold = 120;
 
@@ -58,7 +63,8 @@ void ChunkedSurface::update(const FrameContext& frame, const SurfaceSettings& se
   }
   tiles_->composites().setMixing(renderer_.programs().key().fade);
   select(frame, settings);
-  if (renderer_.programs().ready() && !renderer_.programs().hasPreparedFades() && tiles_->waitingFor().empty()) {
+  if (renderer_.programs().ready() && !renderer_.programs().hasPreparedFades() &&
+      tiles_->waitingFor(allViews).empty()) {
     renderer_.programs().prepareFades();
   }
   tiles_->process(parts_.graphics->uploads(), settings.compositionMilliseconds);
@@ -110,8 +116,8 @@ bool ChunkedSurface::filled() const {
   return renderer_.programs().ready() && (tiles_->full() || (tiles_->filled() && tree_.figures().atTarget));
 }
 
-Settled ChunkedSurface::settled(std::size_t /*view*/) const {
-  // One selection serves all views, so they settle together.
+Settled ChunkedSurface::settled(std::size_t view) const {
+  // Programs, layers and the pool serve all views: what is wrong with them is so with each.
   if (!programTrouble_.empty()) {
     return {true, programTrouble_};
   }
@@ -124,13 +130,13 @@ Settled ChunkedSurface::settled(std::size_t /*view*/) const {
   if (std::string error = tiles_->composites().composer().programs().error(CompositeKind::Base); !error.empty()) {
     return {true, std::move(error)};
   }
-  if (std::string reason = tiles_->waitingFor(); !reason.empty()) {
+  if (std::string reason = tiles_->waitingFor(bitOf(view)); !reason.empty()) {
     return {false, std::move(reason)};
   }
   if (tiles_->full()) {
     return {true, std::string(tooSmallPool)};
   }
-  if (!tree_.figures().atTarget) {
+  if ((tree_.figures().viewsShortOfTarget & bitOf(view)) != 0) {
     const std::uint32_t missing = tree_.figures().missing;
     return {false, missing > 0 ? fmt::format("{} chunks are not at their target", missing) : "chunks become finer"};
   }

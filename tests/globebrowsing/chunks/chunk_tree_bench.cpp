@@ -17,8 +17,8 @@ namespace {
 /// Costs nothing itself, so that selection alone is measured.
 class FreeResidency : public TileResidency {
  public:
-  void want(const TileIndex&, int, double) override {}
-  void renewShape(const TileIndex&, double) override {}
+  void want(const TileIndex&, int, double, std::uint32_t) override {}
+  void renewShape(const TileIndex&, double, std::uint32_t) override {}
   void keep(const TileIndex&, int) override {}
   [[nodiscard]] State state(const TileIndex&, int) const override { return State::Complete; }
   [[nodiscard]] HeightRange heightRange(const TileIndex&) const override { return {-100.0, 4000.0}; }
@@ -38,7 +38,7 @@ class FreeResidency : public TileResidency {
 /// Looks every answer up in a hash table, as a real one has to.
 class TableResidency final : public FreeResidency {
  public:
-  void want(const TileIndex& index, int /*colourLevel*/, double priority) override {
+  void want(const TileIndex& index, int /*colourLevel*/, double priority, std::uint32_t /*views*/) override {
     tiles_[index].priority = priority;
   }
   void keep(const TileIndex& index, int /*colourLevel*/) override { tiles_[index].kept = true; }

@@ -350,6 +350,30 @@ TEST_F(ChunkTreeTest, WhatOneViewMayTurnToIsKeptThoughAnotherNeverSeesIt) {
   }
 }
 
+TEST_F(ChunkTreeTest, EachViewIsAtItsTargetByItself) {
+  const SelectionView here = above(0.7, 0.2, 1e6, 0.0, 1.0);
+  const SelectionView antipode = above(-0.7, 0.2 + std::numbers::pi, 1e6, 0.0, 1.0);
+  const std::set<TileIndex> there = select(antipode);
+  for (const auto incomplete : {TileResidency::State::Drawable, TileResidency::State::Nothing}) {
+    residency_.stateOf = [&](const TileIndex& index) {
+      return there.contains(index) ? incomplete : TileResidency::State::Complete;
+    };
+    select({here, antipode});
+    EXPECT_EQ(tree_.figures().viewsShortOfTarget, 2U);
+    EXPECT_FALSE(tree_.figures().atTarget);
+    select({antipode, here});
+    EXPECT_EQ(tree_.figures().viewsShortOfTarget, 1U);
+    select({antipode, here, antipode});
+    EXPECT_EQ(tree_.figures().viewsShortOfTarget, 5U);
+    select(here);
+    EXPECT_TRUE(tree_.figures().atTarget);
+  }
+  residency_.stateOf = [](const TileIndex&) { return TileResidency::State::Complete; };
+  select({here, antipode});
+  EXPECT_EQ(tree_.figures().viewsShortOfTarget, 0U);
+  EXPECT_TRUE(tree_.figures().atTarget);
+}
+
 TEST_F(ChunkTreeTest, ViewBitsKeepTheirPlaceWhenABadViewIsLeftOut) {
   SelectionView bad;
   bad.cameraPosition.x = std::nan("");

@@ -41,14 +41,14 @@ class FakeResidency final : public TileResidency {
     return (found.kept || found.wanted) && found.index == index ? &found : nullptr;
   }
 
-  void want(const TileIndex& index, int /*colourLevel*/, double priority) override {
+  void want(const TileIndex& index, int /*colourLevel*/, double priority, std::uint32_t /*views*/) override {
     Wish& wish = wishes[slot(index)];
     wish.index = index;
     wish.wanted = true;
     wish.priority = priority;
     allFinite = allFinite && std::isfinite(priority);
   }
-  void renewShape(const TileIndex& index, double priority) override {
+  void renewShape(const TileIndex& index, double priority, std::uint32_t /*views*/) override {
     Wish& wish = wishes[slot(index)];
     EXPECT_FALSE(wish.wanted && wish.index == index) << "asked for twice";
     wish.index = index;
