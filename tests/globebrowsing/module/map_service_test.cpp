@@ -147,6 +147,45 @@ TEST_F(MapServiceTest, WhatFailedOfflineIsThereOnline) {
   EXPECT_EQ(world.provider(), shown) << "what works goes on";
 }
 
+TEST_F(MapServiceTest, LayersOfCapabilitiesOpenOffline) {
+  paths_.cache = folder_ / "cache";
+  const auto beginAnew = [&] {
+    removeGlobes();
+    module_.reset();
+    host_ = std::make_unique<FakeHost>(paths_, statistics_);
+    module_ = makeModule();
+    ASSERT_TRUE(module_->initialize(*host_));
+  };
+  const int port = freePort();
+  const std::string address = "http://127.0.0.1:" + std::to_string(port);
+  const TimedPyramid pyramid{.days = 3, .levels = 2};
+  pyramid.write(folder_ / "served", address);
+  time_ = TimedPyramid::timeOf(1.5);
+  const auto shown = [&] {
+    RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({fileLayer("Days", TimedPyramid::filePath(address))})}});
+    EXPECT_TRUE(settle());
+    EXPECT_EQ(globe.layers().group(LayerGroupId::ColorLayers).find("Days")->lastError.get(), "");
+    return picture();
+  };
+  beginAnew();
+  std::vector<std::uint8_t> online;
+  {
+    const ServerProcess server(ServerProcess::fileServer((folder_ / "served").string(), port), port);
+    online = shown();
+    EXPECT_NEAR(centre()[0], TimedPyramid::colourOf(1)[0], TimedPyramid::grain + 2);
+  }
+  beginAnew();
+  setModuleProperty("NetworkCacheMode", "cache-only");
+  EXPECT_EQ(difference(shown(), online), 0);
+  // Without the cache there is nothing to open.
+  paths_.cache = folder_ / "empty";
+  beginAnew();
+  setModuleProperty("NetworkCacheMode", "cache-only");
+  RenderableGlobe& globe = addGlobe({{"ColorLayers", listOf({fileLayer("Days", TimedPyramid::filePath(address))})}});
+  const Layer& days = *globe.layers().group(LayerGroupId::ColorLayers).find("Days");
+  EXPECT_TRUE(framesUntil([&] { return days.status.get() == "failed"; }));
+}
+
 TEST_F(MapServiceTest, TheViewWaitsForAServerThatIsDown) {
   WorldRaster::cut(folder_ / "world.tif", folder_ / "tiles");
   const int port = freePort();
@@ -207,7 +246,7 @@ class CapabilitiesLoaderTest : public testing::Test {
               <TileSets profile="global-geodetic"><TileSet href="0" units-per-pixel="0.703125" order="0"/>
               <TileSet href="1" units-per-pixel="0.3515625" order="1"/></TileSets></TileMap>)";
     servers_.setLoader([this](const MapServer& server, CapabilitiesLoader::Done done) {
-      services_.capabilities().load(server, std::move(done));
+      asked_->capabilities().load(server, std::move(done));
     });
   }
   ~CapabilitiesLoaderTest() override {
@@ -220,7 +259,7 @@ class CapabilitiesLoaderTest : public testing::Test {
       if (offer || offer.error().what.find("not arrived yet") == std::string::npos) {
         return offer;
       }
-      services_.capabilities().deliver();
+      asked_->capabilities().deliver();
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
@@ -230,6 +269,7 @@ class CapabilitiesLoaderTest : public testing::Test {
   Statistics statistics_;
   MapServers servers_;
   GlobeServices services_{owner_, statistics_, std::filesystem::path()};
+  GlobeServices* asked_ = &services_;
 };
 
 TEST_F(CapabilitiesLoaderTest, AServerOffersWhatAnAssetCanName) {
@@ -249,6 +289,29 @@ TEST_F(CapabilitiesLoaderTest, AServerOffersWhatAnAssetCanName) {
   const Value& table = offer->layers.front().styles.front().table;
   EXPECT_EQ(*table.find("FilePath"), Value(offer->layers.front().url));
   EXPECT_EQ(*table.find("Attribution"), Value("The makers"));
+}
+
+TEST_F(CapabilitiesLoaderTest, WhatWasListedIsListedOffline) {
+  const int port = freePort();
+  const std::string url = "http://127.0.0.1:" + std::to_string(port) + "/tilemapresource.xml";
+  const auto list = [&](const char* mode) {
+    PropertyOwner owner("GlobeBrowsing", "Globe browsing", "");
+    GlobeServices services(owner, statistics_, folder_ / "cache");
+    EXPECT_TRUE(owner.property("NetworkCacheMode")->set(Value(mode)));
+    asked_ = &services;
+    MapServers::Offer offer = offered(url);
+    asked_ = &services_;
+    return offer;
+  };
+  EXPECT_FALSE(list("cache-only"));
+  {
+    const ServerProcess server(ServerProcess::fileServer(folder_.string(), port), port);
+    ASSERT_TRUE(list("read-write"));
+  }
+  const MapServers::Offer offline = list("cache-only");
+  ASSERT_TRUE(offline) << offline.error().message();
+  ASSERT_EQ(offline->layers.size(), 1U);
+  EXPECT_EQ(offline->layers.front().name, "The world");
 }
 
 TEST_F(CapabilitiesLoaderTest, CapabilitiesMayLieInAFile) {
