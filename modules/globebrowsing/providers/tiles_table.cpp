@@ -47,7 +47,10 @@ Result<TileSettings> readKeys(const Value& table, const std::string& where) {
   settings.lastLevel = integerAt(table, "LastLevel");
   settings.countsFromSouth = valueAt(table, "RowsFromSouth").boolean();
   if (const std::string* projection = valueAt(table, "Projection").string()) {
-    settings.isGeodetic = *projection == "EPSG:4326";
+    settings.projection = *projection;
+  }
+  if (const std::optional<std::vector<double>> sides = valueAt(table, "Square").numbers(4)) {
+    settings.square = Extent{(*sides)[0], (*sides)[1], (*sides)[2], (*sides)[3]};
   }
   const int first = settings.firstLevel.value_or(UrlTemplate{}.firstLevel);
   const int last = settings.lastLevel.value_or(UrlTemplate{}.lastLevel);
@@ -99,13 +102,8 @@ const Schema& tilesSchema() {
        {"FirstLevel", Type::Integer, "the coarsest level of a URL template", false, 0.0, 30.0},
        {"LastLevel", Type::Integer, "the finest level of a URL template", false, 0.0, 30.0},
        {"RowsFromSouth", Type::Boolean, "whether {y} of a URL template counts from the south"},
-       {"Projection",
-        Type::String,
-        "of a URL template: one square in EPSG:3857, or two of 180 degrees in EPSG:4326",
-        false,
-        {},
-        {},
-        {"EPSG:3857", "EPSG:4326"}},
+       {"Projection", Type::String, "of a URL template: EPSG:3857, EPSG:4326, or one whose Square is given"},
+       {"Square", Type::Vector4, "west, south, east and north edge of level 0, in units of the projection"},
        {"Extent", Type::Vector4, "west, south, east and north edge of a URL template's data, in degrees", false, -180.0,
         180.0}});
   return fields;

@@ -18,7 +18,8 @@ struct TileSettings {
   std::optional<int> firstLevel{};  ///< 0 to 30, not greater than lastLevel
   std::optional<int> lastLevel{};
   std::optional<bool> countsFromSouth{};
-  std::optional<bool> isGeodetic{};  ///< EPSG:4326 rather than EPSG:3857
+  std::optional<std::string> projection{};
+  std::optional<Extent> square{};  ///< of level 0, in units of the projection
   std::optional<Extent> extentDegrees{};
 
   [[nodiscard]] bool isEmpty() const { return !encoding && keyOfTemplates().empty(); }
@@ -28,7 +29,8 @@ struct TileSettings {
            : firstLevel      ? "FirstLevel"
            : lastLevel       ? "LastLevel"
            : countsFromSouth ? "RowsFromSouth"
-           : isGeodetic      ? "Projection"
+           : projection      ? "Projection"
+           : square          ? "Square"
            : extentDegrees   ? "Extent"
                              : "";
   }

@@ -74,15 +74,70 @@ bool isForDenseScreens(const std::string& address) {
          (at + 3 == path.size() || path[at + 3] == '.');
 }
 
-Result<bool> isGeodeticOf(const UrlTemplate& description, const std::string& where) {
+/// Level 0: one tile, or two beside each other.
+struct Top {
+  MapCrs crs;
+  Extent world;
+  int columns = 1;
+};
+
+/// Half a side of the squares that maps of the poles are cut from (those of NASA GIBS), in metres.
+constexpr double polarHalfWidth = 4194304.0;
+
+Result<Extent> squareOf(const UrlTemplate& description, const std::string& projection, const std::string& where) {
+  const bool isPolar = projection == "EPSG:3031" || projection == "EPSG:3413";
+  if (!description.square && !isPolar) {
+    return failure("nobody says where the tiles of " + projection + " lie", where,
+                   "give Tiles.Square = { west, south, east, north } of level 0, in units of the projection");
+  }
+  const Extent square =
+      description.square.value_or(Extent{-polarHalfWidth, -polarHalfWidth, polarHalfWidth, polarHalfWidth});
+  const double width = square.east - square.west;
+  if (!(width > 0.0) || !(std::abs(square.north - square.south - width) <= 1e-9 * width)) {
+    return failure("the square of level 0 is empty, turned around or no square", where,
+                   "give Tiles.Square = { west, south, east, north }, all sides of one length");
+  }
+  return square;
+}
+
+Result<Top> topOf(const UrlTemplate& description, const std::string& where) {
   const bool asksDegrees = containsIgnoringCase(description.address, "{bbox-epsg-4326}");
   const bool asksMetres = containsIgnoringCase(description.address, "{bbox-epsg-3857}");
-  const bool isGeodetic = description.isGeodetic.value_or(asksDegrees);
-  if (isGeodetic ? asksMetres : asksDegrees) {
+  const std::string projection =
+      canonicalCrsName(description.projection.value_or(asksDegrees ? "EPSG:4326" : "EPSG:3857"));
+  const bool isDegrees = projection == "EPSG:4326";
+  const bool isMercator = projection == "EPSG:3857";
+  if ((asksDegrees && !isDegrees) || (asksMetres && !isMercator)) {
     return failure("the address asks for another projection than that of the tiles", where,
                    "write {bbox} into it, or give the projection that its {bbox-epsg-...} names");
   }
-  return isGeodetic;
+  Result<MapCrs> crs = MapCrs::of(isDegrees ? "CRS:84" : projection, where);
+  if (!crs) {
+    return tl::make_unexpected(std::move(crs.error()));
+  }
+  if (isDegrees || isMercator) {
+    if (description.square) {
+      return failure("the square of " + projection + " is known", where, "leave Tiles.Square out");
+    }
+    const Extent world = *crs->fromDegrees({-180.0, -90.0, 180.0, 90.0});
+    return Top{*std::move(crs), world, isDegrees ? 2 : 1};
+  }
+  return squareOf(description, projection, where).map([&](const Extent& square) {
+    return Top{*std::move(crs), square, 1};
+  });
+}
+
+/// Of the data, in units of the projection.
+Result<Extent> extentOf(const UrlTemplate& description, const Top& top, const std::string& where) {
+  if (!description.extentDegrees) {
+    return top.world;
+  }
+  const std::optional<Extent> extent = top.crs.fromDegrees(*description.extentDegrees);
+  if (!extent) {
+    return failure("the extent is no place of the map", where,
+                   "give west, south, east and north in degrees, within -180, -90, 180, 90");
+  }
+  return *extent;
 }
 
 }  // namespace
@@ -91,7 +146,8 @@ UrlTemplate templateOf(const std::string& address, const std::string& where, con
   UrlTemplate description;
   description.address = address;
   description.where = where;
-  description.isGeodetic = settings.isGeodetic;
+  description.projection = settings.projection;
+  description.square = settings.square;
   description.countsFromSouth = settings.countsFromSouth.value_or(false);
   description.tileSize = settings.pixelSize.value_or(isForDenseScreens(address) ? 512 : description.tileSize);
   description.firstLevel = settings.firstLevel.value_or(description.firstLevel);
@@ -118,14 +174,13 @@ Result<TileService> serviceOf(const UrlTemplate& description) {
     return failure("the levels or the size of the tiles make no sense", service.where,
                    "give levels of 0 to 30, and tiles of 1 to 8192 pixels");
   }
-  const Result<bool> isGeodetic = isGeodeticOf(description, service.where);
-  if (!isGeodetic) {
-    return tl::make_unexpected(isGeodetic.error());
+  const Result<Top> top = topOf(description, service.where);
+  if (!top) {
+    return tl::make_unexpected(top.error());
   }
-  const MapCrs crs = *MapCrs::of(*isGeodetic ? "CRS:84" : "EPSG:3857", service.where);  // both are known
-  const Extent world = *crs.fromDegrees({-180.0, -90.0, 180.0, 90.0});
+  const Extent& world = top->world;
   service.name = description.name;
-  service.crs = crs.definition();
+  service.crs = top->crs.definition();
   service.attribution = description.attribution;
   service.isSizeGiven = true;
   std::vector<TileMatrix> matrices;
@@ -138,15 +193,14 @@ Result<TileService> serviceOf(const UrlTemplate& description) {
     matrix.left = world.west;
     matrix.top = world.north;
     matrix.lastRow = (std::int64_t{1} << level) - 1;
-    matrix.lastColumn = (*isGeodetic ? 2 : 1) * (matrix.lastRow + 1) - 1;
+    matrix.lastColumn = top->columns * (matrix.lastRow + 1) - 1;
     matrix.pixelWidth = (world.north - world.south) / static_cast<double>(matrix.lastRow + 1) / description.tileSize;
     matrix.pixelHeight = matrix.pixelWidth;
     matrices.push_back(matrix);
   }
-  const auto extent = crs.fromDegrees(description.extentDegrees.value_or(Extent{-180.0, -90.0, 180.0, 90.0}));
+  const Result<Extent> extent = extentOf(description, *top, service.where);
   if (!extent) {
-    return failure("the extent is no place of the map", service.where,
-                   "give west, south, east and north in degrees, within -180, -90, 180, 90");
+    return tl::make_unexpected(extent.error());
   }
   if (auto set = setMatrices(service, std::move(matrices), *extent); !set) {
     return tl::make_unexpected(std::move(set.error()));

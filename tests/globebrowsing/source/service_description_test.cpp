@@ -27,21 +27,21 @@ TEST(UrlTemplate, FillsInWhatWebMapsWrite) {
                            {"https://h/{q}", "https://h/121"},
                            {"https://{switch:p,q}.h/{z}/{x}/{y}", "https://q.h/3/5/2"},
                            {"https://{a-c}.h/{z}/{x}/{y}", "https://b.h/3/5/2"}}) {
-    auto service = serviceOf(UrlTemplate{test.address, "n", "w", false, false, 256, 0, 3});
+    auto service = serviceOf(UrlTemplate{test.address, "n", "w", "EPSG:3857", false, 256, 0, 3});
     ASSERT_TRUE(service) << service.error().message();
     EXPECT_TRUE(isUrlTemplate(test.address));
     EXPECT_EQ(service->url({0, 5, 2}), test.expected);
     EXPECT_EQ(service->crs, "EPSG:3857");
   }
   auto geodetic =
-      serviceOf(UrlTemplate{"https://h/{z}/{x}/{y}", "", "", true, true, 512, 1, 2, {}, Extent{0, 0, 45, 45}});
+      serviceOf(UrlTemplate{"https://h/{z}/{x}/{y}", "", "", "EPSG:4326", true, 512, 1, 2, {}, Extent{0, 0, 45, 45}});
   ASSERT_TRUE(geodetic);
   EXPECT_EQ(geodetic->crs, "");
   ASSERT_EQ(geodetic->matrices.size(), 2U);
   EXPECT_EQ(geodetic->matrices[0].firstColumn, 4);
   EXPECT_EQ(geodetic->matrices[0].lastColumn, 4);
   EXPECT_EQ(geodetic->url({0, 4, 1}), "https://h/2/4/2");
-  const auto box = serviceOf(UrlTemplate{"https://h/?w={width}&b={bbox-epsg-3857}", "", "", false, false, 256, 0, 3});
+  const auto box = serviceOf(UrlTemplate{"https://h/?w={width}&b={bbox-epsg-3857}", "", "", "EPSG:3857", false, 256, 0, 3});
   ASSERT_TRUE(box);
   const std::string url = box->url({0, 5, 2});
   EXPECT_EQ(url.substr(0, 20), "https://h/?w=256&b=5");
@@ -53,7 +53,7 @@ TEST(UrlTemplate, FillsInWhatWebMapsWrite) {
   EXPECT_NEAR(*number(sides[2]), 2 * tile, 1e-6);
   EXPECT_NEAR(*number(sides[3]), 2 * tile, 1e-6);
   EXPECT_FALSE(serviceOf(UrlTemplate{"https://h/{x}/{y}"}));
-  EXPECT_FALSE(serviceOf(UrlTemplate{"https://h/{z}/{x}/{y}", "", "", false, false, 0}));
+  EXPECT_FALSE(serviceOf(UrlTemplate{"https://h/{z}/{x}/{y}", "", "", "EPSG:3857", false, 0}));
   EXPECT_FALSE(isUrlTemplate("http://h/${z}/${x}/${y}"));
   EXPECT_FALSE(isUrlTemplate("/a/{z}/b"));
 }
