@@ -1,27 +1,44 @@
 #pragma once
 
 #include <future>
+#include <utility>
+
+#include <unistd.h>
 
 #include "globebrowsing/source/service_asset.h"
 #include "service_stage.h"
 
 namespace meridian::globebrowsing {
 
-/// A test with MapServer and, where there is a mapproxy.yaml, MapProxy. The test writes their files, then starts them.
+/// A test with MapServer behind fcgiwrap and, where there is a mapproxy.yaml, MapProxy; nginx hands /mapserv and
+/// /mapproxy on to them, and writes down what it is asked for. The test writes their files, then starts them.
 class MapServersStage : public ServiceTest {
  protected:
   void SetUp() override {
-    for (const char* program : {"/usr/bin/python3", "/usr/bin/mapserv", "/usr/bin/mapproxy-util"}) {
+    for (const char* program :
+         {"/usr/bin/mapserv", "/usr/sbin/fcgiwrap", "/usr/bin/mapproxy-util", "/usr/sbin/nginx"}) {
       if (!std::filesystem::exists(program)) {
-        GTEST_SKIP() << program << " is missing; install python3, cgi-mapserver and mapproxy";
+        GTEST_SKIP() << program << " is missing; install cgi-mapserver, fcgiwrap, mapproxy and nginx-light";
       }
     }
   }
   void start() {
+    using Command = std::vector<std::string>;
+    const int mapServerPort = freePort();
+    mapServer = std::make_unique<ServerProcess>(
+        Command{"/usr/sbin/fcgiwrap", "-s", "tcp:127.0.0.1:" + std::to_string(mapServerPort)}, mapServerPort);
+    int mapProxyPort = 0;
+    if (std::filesystem::exists(folder / "mapproxy.yaml")) {
+      mapProxyPort = freePort();
+      mapProxy = std::make_unique<ServerProcess>(
+          Command{"/usr/bin/python3", MERIDIAN_SOURCE_FOLDER "/tests/service/map_proxy.py",
+                  std::to_string(mapProxyPort), (folder / "mapproxy.yaml").string()},
+          mapProxyPort);
+    }
+    writeNginxConfiguration(mapServerPort, mapProxyPort);
+    const std::string prefix = folder.string() + "/";
     server = std::make_unique<ServerProcess>(
-        std::vector<std::string>{"/usr/bin/python3", MERIDIAN_SOURCE_FOLDER "/tests/service/map_servers.py",
-                                 std::to_string(port), folder.string()},
-        port);
+        Command{"/usr/sbin/nginx", "-p", prefix, "-c", prefix + "nginx.conf", "-e", prefix + "nginx.log"}, port);
   }
   [[nodiscard]] std::string base() const { return "http://127.0.0.1:" + std::to_string(port); }
   /// A map file of these layers.
@@ -65,7 +82,41 @@ class MapServersStage : public ServiceTest {
   }
 
   int port = freePort();
+  std::unique_ptr<ServerProcess> mapServer;
+  std::unique_ptr<ServerProcess> mapProxy;
   std::unique_ptr<ServerProcess> server;
+
+ private:
+  /// Without a port there is no MapProxy.
+  void writeNginxConfiguration(int mapServerPort, int mapProxyPort) const {
+    std::ofstream file(folder / "nginx.conf");
+    file << (::geteuid() == 0 ? "user root;\n" : "")
+         << "daemon off;\nworker_processes 1;\npid nginx.pid;\nevents { worker_connections 512; }\nhttp {\n"
+            "  log_format target '$request_uri';\n  access_log requests target;\n";
+    for (const char* kind : {"client_body", "proxy", "fastcgi", "uwsgi", "scgi"}) {
+      file << "  " << kind << "_temp_path temp_" << kind << ";\n";
+    }
+    file << "  server {\n    listen 127.0.0.1:" << port
+         << ";\n    location = /mapserv {\n      fastcgi_pass 127.0.0.1:" << mapServerPort << ";\n";
+    const std::vector<std::pair<std::string, std::string>> parameters{
+        {"SCRIPT_FILENAME", "/usr/bin/mapserv"},
+        {"SCRIPT_NAME", "/mapserv"},
+        {"REQUEST_METHOD", "$request_method"},
+        {"QUERY_STRING", "$query_string"},
+        {"SERVER_NAME", "127.0.0.1"},
+        {"SERVER_PORT", std::to_string(port)},
+        {"MS_MAPFILE", (folder / "world.map").string()},
+        {"MAPSERVER_CONFIG_FILE", (folder / "mapserver.conf").string()}};
+    for (const auto& [name, value] : parameters) {
+      file << "      fastcgi_param " << name << " " << value << ";\n";
+    }
+    file << "    }\n";
+    if (mapProxyPort != 0) {
+      file << "    location /mapproxy {\n      proxy_pass http://127.0.0.1:" << mapProxyPort
+           << ";\n      proxy_set_header Host $http_host;\n    }\n";
+    }
+    file << "  }\n}\n";
+  }
 };
 
 }  // namespace meridian::globebrowsing
