@@ -41,7 +41,8 @@ TEST(UrlTemplate, FillsInWhatWebMapsWrite) {
   EXPECT_EQ(geodetic->matrices[0].firstColumn, 4);
   EXPECT_EQ(geodetic->matrices[0].lastColumn, 4);
   EXPECT_EQ(geodetic->url({0, 4, 1}), "https://h/2/4/2");
-  const auto box = serviceOf(UrlTemplate{"https://h/?w={width}&b={bbox-epsg-3857}", "", "", "EPSG:3857", false, 256, 0, 3});
+  const auto box =
+      serviceOf(UrlTemplate{"https://h/?w={width}&b={bbox-epsg-3857}", "", "", "EPSG:3857", false, 256, 0, 3});
   ASSERT_TRUE(box);
   const std::string url = box->url({0, 5, 2});
   EXPECT_EQ(url.substr(0, 20), "https://h/?w=256&b=5");
