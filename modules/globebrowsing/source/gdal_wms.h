@@ -18,7 +18,7 @@ struct GdalDescription {
 };
 
 /// Reads a `<GDAL_WMS>` document (GDAL's driver page "WMS - Web Map Services") for us to ask ourselves: the services
-/// WMS, TMS, WorldWind, TileService, VirtualEarth, AGS, and TiledWMS where the document has its configuration within.
+/// WMS, TMS, WorldWind, TileService, VirtualEarth and AGS. (A TiledWMS has no levels of its own: describeService.)
 ///
 /// Levels, tile numbers and places are GDAL's, with these differences, all for the better of a globe:
 /// - a window that is plainly in degrees is in degrees, whatever `Projection` says (53 of OpenSpace's own descriptions

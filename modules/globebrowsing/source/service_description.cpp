@@ -187,6 +187,27 @@ CapabilitiesReference referenceOfMaps(const pugi::xml_node& root) {
   return reference;
 }
 
+/// A TiledWMS is known by its patterns, which the server tells. Nothing where the document brings the server's answer
+/// along, or changes other places of the patterns than the time: that is GDAL's.
+std::optional<CapabilitiesReference> referenceOfPatterns(const pugi::xml_node& root) {
+  const pugi::xml_node service = child(root, "Service");
+  if (!equalIgnoringCase(attribute(service, "name"), "TiledWMS") || child(service, "Configuration") ||
+      text(service, "ServerUrl").empty()) {
+    return std::nullopt;
+  }
+  CapabilitiesReference reference;
+  reference.kind = CapabilitiesKind::TiledWms;
+  reference.url = withParameters(repairedUrl(text(service, "ServerUrl")), {{"request", "GetTileService"}});
+  reference.layer = text(service, "TiledGroupName");
+  for (const pugi::xml_node& change : children(service, "Change")) {
+    if (!equalIgnoringCase(attribute(change, "key"), "${time}")) {
+      return std::nullopt;
+    }
+    reference.choices.time = text(change);
+  }
+  return reference;
+}
+
 Result<ServiceDescription> describeDocument(const std::string& content, const Source& source,
                                             const std::string& folder) {
   auto document = XmlDocument::parse(content, source.where);
@@ -200,6 +221,10 @@ Result<ServiceDescription> describeDocument(const std::string& content, const So
     return result;
   }
   if (isNamed(root, "GDAL_WMS")) {
+    result.reference = referenceOfPatterns(root);
+    if (result.reference) {
+      return result;
+    }
     auto read = readGdalWms(content, source.where);
     if (!read) {
       return tl::make_unexpected(std::move(read.error()));

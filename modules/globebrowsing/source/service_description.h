@@ -25,7 +25,8 @@ struct ServiceDescription {
 /// - an address with places for a tile: "https://.../{z}/{x}/{y}.png" (url_template.h);
 /// - GDAL's "WMS:http://...?LAYERS=...&SRS=...&BBOX=..." (a GetMap request);
 /// - a layer of capabilities (capabilities_reference.h): "WMTS:URL,layer=...", the address of such a document, a
-///   GDAL_WMTS document, a GDAL_WMS document that has a GetCapabilitiesUrl, and a file with capabilities.
+///   GDAL_WMTS document, a GDAL_WMS document that has a GetCapabilitiesUrl or is of a TiledWMS, and a file with
+///   capabilities.
 /// `filePath` is absolute where it is a file. Reads that file and, of a VRT, its sibling, so call it on a worker; asks
 /// no server. `settings` are what the layer says of a URL template's tiles; their encoding is not seen to here.
 /// Errors: a description of ours with something wrong in it. What is not ours is no error.

@@ -119,6 +119,30 @@ TEST(ServiceDescription, CapabilitiesOfEveryKindAreReferredTo) {
   }
 }
 
+TEST(ServiceDescription, ATiledWmsIsAskedForItsPatterns) {
+  const auto document = [](const std::string& server, const std::string& more) {
+    return "<GDAL_WMS><Service name='TiledWMS'><ServerUrl>" + server +
+           "</ServerUrl><TiledGroupName>Global SRTM</TiledGroupName>" + more + "</Service></GDAL_WMS>";
+  };
+  const auto plain = describe(document("http://h/wms.cgi?", "")).reference;
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->kind, CapabilitiesKind::TiledWms);
+  EXPECT_EQ(plain->url, describe("WMS:http://h/wms.cgi?request=GetTileService,layer=a").reference->url);
+  EXPECT_EQ(plain->layer, "Global SRTM");
+  EXPECT_EQ(plain->choices.time, "");
+  const auto timed =
+      describe(document("http://h/wms.cgi?map=a&amp;", "<Change key='${time}'>2009-10-01</Change>")).reference;
+  ASSERT_TRUE(timed);
+  EXPECT_EQ(timed->url, "http://h/wms.cgi?map=a&request=GetTileService");
+  EXPECT_EQ(timed->choices.time, "2009-10-01");
+  for (const char* gdals :
+       {"<Configuration>&lt;WMS_Tile_Service/&gt;</Configuration>", "<Change key='${layer}'>a</Change>"}) {
+    const ServiceDescription left = describe(document("http://h/wms.cgi?", gdals));
+    EXPECT_FALSE(left.reference || left.service) << gdals;
+    EXPECT_FALSE(left.reason.empty()) << gdals;
+  }
+}
+
 TEST(ServiceDescription, FilesOfCapabilitiesAreReferredTo) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "meridian_capabilities_files";
   std::filesystem::create_directories(folder);
