@@ -153,7 +153,7 @@ def toggle_cold():
 
 @benchmark("toggle-cold-frames-waited", "frames", AT_MOST, 0)
 def toggle_cold_frames_waited():
-    """Frames of that flight in which the render thread waited for a shader compiler."""
+    """Frames of that flight in which the render thread waited for the program cache."""
     return cold_toggling()[1]
 
 
