@@ -188,12 +188,17 @@ CapabilitiesReference referenceOfMaps(const pugi::xml_node& root) {
 }
 
 /// A TiledWMS is known by its patterns, which the server tells. Nothing where the document brings the server's answer
-/// along, or changes other places of the patterns than the time: that is GDAL's.
+/// along, changes other places of the patterns than the time, or has something to be sent along: that is GDAL's.
 std::optional<CapabilitiesReference> referenceOfPatterns(const pugi::xml_node& root) {
   const pugi::xml_node service = child(root, "Service");
   if (!equalIgnoringCase(attribute(service, "name"), "TiledWMS") || child(service, "Configuration") ||
       text(service, "ServerUrl").empty()) {
     return std::nullopt;
+  }
+  for (const char* sent : {"UserPwd", "Referer", "Accept", "UserAgent"}) {
+    if (!text(root, sent).empty()) {
+      return std::nullopt;
+    }
   }
   CapabilitiesReference reference;
   reference.kind = CapabilitiesKind::TiledWms;

@@ -141,6 +141,9 @@ TEST(ServiceDescription, ATiledWmsIsAskedForItsPatterns) {
     EXPECT_FALSE(left.reference || left.service) << gdals;
     EXPECT_FALSE(left.reason.empty()) << gdals;
   }
+  EXPECT_FALSE(describe("<GDAL_WMS><Service name='TiledWMS'><ServerUrl>http://h/w?</ServerUrl></Service>"
+                        "<UserPwd>a:b</UserPwd></GDAL_WMS>")
+                   .reference);
 }
 
 TEST(ServiceDescription, FilesOfCapabilitiesAreReferredTo) {
